@@ -1,0 +1,2 @@
+//! The kdray command.
+fn main() {}

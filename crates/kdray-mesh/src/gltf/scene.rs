@@ -1,0 +1,201 @@
+//! The default scene as one mesh.
+
+use std::collections::HashMap;
+
+use super::accessor::Accessors;
+use super::buffers::Buffers;
+use super::schema::{Primitive, Root};
+use super::transform::Transform;
+use crate::Loaded;
+use crate::error::{LoadError, Place, Reason};
+use crate::loaded::check_vertex_count;
+
+/// The triangles of the default scene; without a scene, of all nodes; without nodes, of all meshes.
+pub(super) fn flatten(root: &Root, buffers: &Buffers) -> Result<Loaded, LoadError> {
+    let accessors = Accessors { root, buffers };
+    let mut flat = Flat { accessors, loaded: Loaded::default(), left_out: LeftOut::default() };
+    check_transforms(root)?;
+    if root.nodes.is_empty() {
+        for mesh in 0..root.meshes.len() {
+            flat.mesh(mesh, &Transform::IDENTITY)?;
+        }
+    } else {
+        flat.nodes(root_nodes(root)?)?;
+    }
+    flat.left_out.note(&mut flat.loaded.notes);
+    Ok(flat.loaded)
+}
+
+/// Checks every node, whether it is in the scene or not.
+fn check_transforms(root: &Root) -> Result<(), LoadError> {
+    for (index, node) in root.nodes.iter().enumerate() {
+        Transform::of_node(node).map_err(|reason| node_error(index, reason))?;
+    }
+    Ok(())
+}
+
+/// The nodes to start from.
+fn root_nodes(root: &Root) -> Result<Vec<usize>, LoadError> {
+    let index = root.scene.unwrap_or(0);
+    match root.scenes.get(index) {
+        Some(scene) => Ok(scene.nodes.clone()),
+        None if root.scene.is_some() => {
+            Err(LoadError::malformed(Place::item(format!("scene {index}")), "there is no such scene"))
+        }
+        None => {
+            let mut is_child = vec![false; root.nodes.len()];
+            for &child in root.nodes.iter().flat_map(|node| &node.children) {
+                if let Some(is_child) = is_child.get_mut(child) {
+                    *is_child = true;
+                }
+            }
+            Ok((0..root.nodes.len()).filter(|&node| !is_child[node]).collect())
+        }
+    }
+}
+
+fn node_error(index: usize, reason: &str) -> LoadError {
+    LoadError::malformed(Place::item(format!("node {index}")), reason)
+}
+
+/// What has no triangles at rest.
+#[derive(Default)]
+struct LeftOut {
+    lines_and_points: usize,
+    corners: usize,
+    morphs: usize,
+    skins: usize,
+}
+
+impl LeftOut {
+    fn note(&self, notes: &mut Vec<String>) {
+        let mut note = |count: usize, what: &str| {
+            if count > 0 {
+                notes.push(format!("{count} {what}"));
+            }
+        };
+        note(self.lines_and_points, "primitives of points or lines left out");
+        note(self.corners, "corners beyond the last whole triangle left out");
+        note(self.morphs, "primitives with morph targets taken at rest");
+        note(self.skins, "skinned meshes taken at rest");
+    }
+}
+
+/// The scene so far.
+struct Flat<'a> {
+    accessors: Accessors<'a>,
+    loaded: Loaded,
+    left_out: LeftOut,
+}
+
+impl Flat<'_> {
+    /// Walks the tree of nodes, parents first.
+    fn nodes(&mut self, roots: Vec<usize>) -> Result<(), LoadError> {
+        let nodes = &self.accessors.root.nodes;
+        let mut visited = vec![false; nodes.len()];
+        let start = roots.into_iter().rev().map(|index| (index, Transform::IDENTITY));
+        let mut stack: Vec<(usize, Transform)> = start.collect();
+        while let Some((index, parent)) = stack.pop() {
+            let node = nodes.get(index).ok_or_else(|| node_error(index, "there is no such node"))?;
+            if std::mem::replace(&mut visited[index], true) {
+                return Err(node_error(index, "it is in the scene twice, or its own ancestor"));
+            }
+            let local = Transform::of_node(node).map_err(|reason| node_error(index, reason))?;
+            let transform = parent.after(&local);
+            if let Some(mesh) = node.mesh {
+                self.left_out.skins += usize::from(node.skin.is_some());
+                self.mesh(mesh, &transform)?;
+            }
+            stack.extend(node.children.iter().rev().map(|&child| (child, transform)));
+        }
+        Ok(())
+    }
+
+    /// Adds a mesh. Primitives that share their positions share their vertices.
+    fn mesh(&mut self, index: usize, transform: &Transform) -> Result<(), LoadError> {
+        let place = || Place::item(format!("mesh {index}"));
+        let missing = || LoadError::malformed(place(), "there is no such mesh");
+        let mesh = self.accessors.root.meshes.get(index).ok_or_else(missing)?;
+        let mut known = HashMap::new();
+        for (number, primitive) in mesh.primitives.iter().enumerate() {
+            let item = format!("mesh {index}, primitive {number}");
+            self.primitive(primitive, transform, &item, &mut known)?;
+        }
+        Ok(())
+    }
+
+    fn primitive(
+        &mut self,
+        primitive: &Primitive,
+        transform: &Transform,
+        item: &str,
+        known: &mut HashMap<usize, Vertices>,
+    ) -> Result<(), LoadError> {
+        let place = || Place::item(item);
+        match primitive.mode {
+            0..4 => {
+                self.left_out.lines_and_points += 1;
+                return Ok(());
+            }
+            4..7 => {}
+            mode => return Err(LoadError::malformed(place(), format!("{mode} is not a mode"))),
+        }
+        self.left_out.morphs += usize::from(!primitive.targets.is_empty());
+        let Some(position) = primitive.attributes.position else {
+            return Err(LoadError::malformed(place(), "it has no positions"));
+        };
+        let vertices = match known.get(&position) {
+            Some(vertices) => *vertices,
+            None => *known.entry(position).or_insert(self.vertices(position, transform)?),
+        };
+        let corners = match primitive.indices {
+            Some(indices) => self.accessors.indices(indices)?,
+            None => (0..vertices.count).collect(),
+        };
+        self.triangles(primitive.mode, &corners, vertices, transform.mirrors(), item)
+    }
+
+    /// Adds the vertices of an accessor, moved to their place.
+    fn vertices(&mut self, accessor: usize, transform: &Transform) -> Result<Vertices, LoadError> {
+        let positions = self.accessors.positions(accessor)?;
+        let first = self.loaded.positions.len();
+        check_vertex_count(first + positions.len())?;
+        self.loaded.positions.extend(positions.iter().map(|&position| transform.apply(position)));
+        Ok(Vertices { first: first as u32, count: positions.len() as u32 })
+    }
+
+    fn triangles(
+        &mut self,
+        mode: u32,
+        corners: &[u32],
+        vertices: Vertices,
+        is_mirrored: bool,
+        item: &str,
+    ) -> Result<(), LoadError> {
+        if let Some(bad) = corners.iter().position(|&corner| corner >= vertices.count) {
+            let place = Place::item(format!("{item}, corner {bad}"));
+            let (index, vertices) = (corners[bad].into(), vertices.count as usize);
+            return Err(LoadError::new(place, Reason::IndexOutOfRange { index, vertices }));
+        }
+        let count = if mode == 4 { corners.len() / 3 } else { corners.len().saturating_sub(2) };
+        let used = if mode == 4 { count * 3 } else if count == 0 { 0 } else { corners.len() };
+        self.left_out.corners += corners.len() - used;
+        self.loaded.triangles.extend((0..count).map(|k| {
+            let [a, b, c] = match mode {
+                4 => [3 * k, 3 * k + 1, 3 * k + 2],
+                5 => [k, k + 1 + k % 2, k + 2 - k % 2],
+                _ => [k + 1, k + 2, 0],
+            };
+            let [a, b, c] = [a, b, c].map(|corner| corners[corner] + vertices.first);
+            if is_mirrored { [a, c, b] } else { [a, b, c] }
+        }));
+        Ok(())
+    }
+}
+
+/// Vertices of the scene that came from one accessor.
+#[derive(Clone, Copy)]
+struct Vertices {
+    first: u32,
+    count: u32,
+}

@@ -1,0 +1,130 @@
+//! Events: where references end, lie flat and start along an axis [WH06].
+
+use crate::geometry::Aabb;
+
+/// What an event says of its reference. At one position events come in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u64)]
+pub(super) enum Kind {
+    End = 0,
+    Planar = 1,
+    Start = 2,
+}
+
+/// Position, kind and reference in 64 bits that sort as events should.
+///
+/// ```text
+/// 63      32 31  30 29        0
+/// position   kind   reference
+/// ```
+///
+/// The position is an f32 whose bits were rearranged so that they compare like the number.
+/// The reference is an index into the triangles of the event's node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
+pub(super) struct Event(u64);
+
+const REFERENCE: u64 = (1 << 30) - 1;
+
+impl Event {
+    #[inline(always)]
+    pub(super) fn new(position: f32, kind: Kind, reference: u32) -> Self {
+        Self(u64::from(ordered(position)) << 32 | (kind as u64) << 30 | u64::from(reference))
+    }
+
+    #[inline(always)]
+    pub(super) fn position(self) -> f32 {
+        position_of(self.ordered_position())
+    }
+
+    /// The position as an integer that compares like it.
+    #[inline(always)]
+    pub(super) fn ordered_position(self) -> u32 {
+        (self.0 >> 32) as u32
+    }
+
+    #[inline(always)]
+    pub(super) fn reference(self) -> usize {
+        (self.0 & REFERENCE) as usize
+    }
+
+    /// 1 for a start, else 0.
+    #[inline(always)]
+    pub(super) fn is_start(self) -> u32 {
+        (self.0 >> 31) as u32 & 1
+    }
+
+    #[inline(always)]
+    pub(super) fn is(self, kind: Kind) -> bool {
+        (self.0 >> 30) & 3 == kind as u64
+    }
+
+    /// Position and kind: what the order of a list depends on.
+    #[inline(always)]
+    pub(super) fn order(self) -> u64 {
+        self.0 >> 30
+    }
+
+    /// The same event of the reference called `reference` in a child.
+    #[inline(always)]
+    pub(super) fn renamed(self, reference: u32) -> Self {
+        Self(self.0 & !REFERENCE | u64::from(reference) & REFERENCE)
+    }
+}
+
+/// The events of a reference along `axis`: one if it is flat there, else two.
+#[inline(always)]
+pub(super) fn events_of(bounds: &Aabb, axis: usize, reference: u32) -> (Event, Option<Event>) {
+    let (lower, upper) = (bounds.lower[axis], bounds.upper[axis]);
+    if lower == upper {
+        (Event::new(lower, Kind::Planar, reference), None)
+    } else {
+        let end = Event::new(upper, Kind::End, reference);
+        (Event::new(lower, Kind::Start, reference), Some(end))
+    }
+}
+
+/// Bits that compare, as an unsigned integer, like the number.
+#[inline(always)]
+pub(super) fn ordered(position: f32) -> u32 {
+    let bits = position.to_bits();
+    bits ^ (((bits as i32 >> 31) as u32) | 0x8000_0000)
+}
+
+/// The number of which `ordered` gave these bits.
+#[inline(always)]
+pub(super) fn position_of(ordered: u32) -> f32 {
+    f32::from_bits(ordered ^ (!((ordered as i32 >> 31) as u32) | 0x8000_0000))
+}
+
+const _: () = assert!(size_of::<Event>() == 8);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ordered_bits_compare_like_numbers() {
+        let numbers = [f32::MIN, -1.5, -1e-40, 0.0, 1e-40, 1.0, f32::MAX];
+        for pair in numbers.windows(2) {
+            assert!(ordered(pair[0]) < ordered(pair[1]), "{pair:?}");
+        }
+        for number in numbers {
+            assert_eq!(position_of(ordered(number)).to_bits(), number.to_bits());
+        }
+    }
+
+    #[test]
+    fn an_event_keeps_what_it_was_made_of() {
+        let event = Event::new(-2.5, Kind::Start, 77);
+        assert_eq!((event.position(), event.reference()), (-2.5, 77));
+        assert!(event.is(Kind::Start) && event.is_start() == 1);
+        assert_eq!(event.renamed(5), Event::new(-2.5, Kind::Start, 5));
+    }
+
+    #[test]
+    fn at_one_position_ends_come_before_planars_before_starts() {
+        let at = |kind| Event::new(1.0, kind, 9).order();
+        assert!(at(Kind::End) < at(Kind::Planar) && at(Kind::Planar) < at(Kind::Start));
+    }
+}

@@ -1,0 +1,154 @@
+//! The nodes near the root: lists of their own, parallel over axes and children.
+
+use super::set::{OwnedSet, Set, sorted_events};
+use super::split::{Sizes, Workspace};
+use super::sweep::{Candidate, cheapest, sweep};
+use super::{BuildError, Context, Growth, Node, NodeCost, small};
+
+/// Subtrees of at most this many references are small: one task, in scratch memory. More makes
+/// fewer, longer tasks; less leaves more nodes to lists of their own.
+const SMALL: usize = 16 * 1024;
+
+/// A set and the bytes that were booked for it.
+struct Booked {
+    set: OwnedSet,
+    bytes: usize,
+}
+
+/// Builds the whole tree.
+pub(super) fn build(context: &Context) -> Result<Growth, BuildError> {
+    let mesh = context.mesh;
+    let bytes = OwnedSet::bytes(mesh.triangles().len());
+    context.meter.charge("events", bytes)?;
+    let [x, y, z] = on_axes(context, |axis| sorted_events(mesh, axis));
+    let set = OwnedSet::root(mesh, [x, y, z]);
+    subtree(context, Booked { set, bytes }, Node { bounds: mesh.bounds(), depth: 0, share: 1.0 })
+}
+
+/// Runs `work` for the three axes, at the same time if the build has threads.
+fn on_axes<T: Send>(context: &Context, work: impl Fn(usize) -> T + Sync) -> [T; 3] {
+    let (x, (y, z)) = context.join(|| work(0), || context.join(|| work(1), || work(2)));
+    [x, y, z]
+}
+
+fn subtree(context: &Context, owned: Booked, node: Node) -> Result<Growth, BuildError> {
+    let set = owned.set.as_set();
+    if set.triangles.len() <= SMALL {
+        let growth = small::build(context, set, node);
+        context.meter.release(owned.bytes);
+        return growth;
+    }
+    context.meter.check_cancelled()?;
+    let cost = context.prices(&node, set.triangles.len());
+    let plane = cost.and_then(|cost| Some((cheapest_plane(context, &set, &node, &cost)?, cost)));
+    let Some((candidate, cost)) = plane else {
+        let growth = leaf(context, &set, &node);
+        context.meter.release(owned.bytes);
+        return growth;
+    };
+    let mut workspace = Workspace::default();
+    let sizes = workspace.assign(&set, &node.bounds, &candidate, &cost, context);
+    let children = node.cut(candidate.axis, candidate.position, [sizes.left, sizes.right]);
+    let (left, right) = if sizes.is_cut_off() {
+        cut_off(context, owned, children, sizes)
+    } else {
+        let [left, right] = split(context, &set, workspace, sizes)?;
+        context.meter.release(owned.bytes);
+        drop(owned);
+        context.join(
+            || subtree(context, left, children[0]),
+            || subtree(context, right, children[1]),
+        )
+    };
+    joined(context, &candidate, &left?, &right?)
+}
+
+fn cheapest_plane(
+    context: &Context,
+    set: &Set,
+    node: &Node,
+    cost: &NodeCost,
+) -> Option<Candidate> {
+    let by_axis = on_axes(context, |axis| sweep(set, &node.bounds, cost, axis));
+    cheapest(by_axis, cost.leaf(set.triangles.len()))
+}
+
+fn leaf(context: &Context, set: &Set, node: &Node) -> Result<Growth, BuildError> {
+    let mut growth = Growth::default();
+    growth.push_leaf(set.triangles);
+    context.meter.charge("tree", growth.capacity_bytes())?;
+    context.meter.advance(node.share);
+    Ok(growth)
+}
+
+/// One child is empty and the other has the very lists of the node.
+fn cut_off(
+    context: &Context,
+    owned: Booked,
+    [left, right]: [Node; 2],
+    sizes: Sizes,
+) -> (Result<Growth, BuildError>, Result<Growth, BuildError>) {
+    let mut empty = Growth::default();
+    empty.push_leaf(&[]);
+    let charged = context.meter.charge("tree", empty.capacity_bytes());
+    let empty = charged.map(|()| empty);
+    if sizes.left == 0 {
+        (empty, subtree(context, owned, right))
+    } else {
+        (subtree(context, owned, left), empty)
+    }
+}
+
+/// The lists of the two children.
+fn split(
+    context: &Context,
+    set: &Set,
+    mut workspace: Workspace,
+    sizes: Sizes,
+) -> Result<[Booked; 2], BuildError> {
+    let counts = [sizes.left, sizes.right];
+    let bytes = counts.map(OwnedSet::bytes);
+    let work_bytes = workspace.bytes(set.triangles.len());
+    context.meter.charge("split", bytes[0] + bytes[1] + work_bytes)?;
+    let [mut left, mut right] = counts.map(OwnedSet::with_room);
+    workspace.name(set, [left.triangles_mut(), right.triangles_mut()]);
+    let lists = left.events_mut().into_iter().zip(right.events_mut());
+    let mut axes: Vec<_> = lists.enumerate().map(|(axis, lists)| (axis, lists, [0; 2])).collect();
+    let workspace = &workspace;
+    let split_axis = |(axis, (left, right), lengths): &mut (usize, (&mut [_], &mut [_]), _)| {
+        *lengths = workspace.split_axis(*axis, set.events[*axis], [left, right]);
+    };
+    if context.limits.threads > 1 {
+        use rayon::prelude::*;
+        axes.par_iter_mut().for_each(split_axis);
+    } else {
+        axes.iter_mut().for_each(split_axis);
+    }
+    let lengths = [0, 1, 2].map(|axis: usize| axes[axis].2);
+    left.truncate(sizes.left, lengths.map(|[left, _]| left));
+    right.truncate(sizes.right, lengths.map(|[_, right]| right));
+    context.meter.release(work_bytes);
+    let [left_bytes, right_bytes] = bytes;
+    Ok([Booked { set: left, bytes: left_bytes }, Booked { set: right, bytes: right_bytes }])
+}
+
+/// An inner node over two finished subtrees.
+fn joined(
+    context: &Context,
+    candidate: &Candidate,
+    left: &Growth,
+    right: &Growth,
+) -> Result<Growth, BuildError> {
+    let mut growth = Growth {
+        nodes: Vec::with_capacity(1 + left.nodes.len() + right.nodes.len()),
+        references: Vec::with_capacity(left.references.len() + right.references.len()),
+    };
+    context.meter.charge("tree", growth.capacity_bytes())?;
+    let place = growth.push_inner(candidate.axis, candidate.position);
+    growth.append(left);
+    growth.set_right(place);
+    growth.append(right);
+    context.meter.release(left.capacity_bytes() + right.capacity_bytes());
+    growth.check_size()?;
+    Ok(growth)
+}

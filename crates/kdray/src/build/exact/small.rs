@@ -1,0 +1,141 @@
+//! Small subtrees: depth-first, in scratch memory that stays in the cache.
+
+use super::event::Event;
+use super::set::{Room, Scratch, Set, room_sizes};
+use super::split::Workspace;
+use super::sweep::{cheapest, sweep};
+use super::{BuildError, Context, Growth, Node};
+
+/// What the task of a small subtree works with.
+#[derive(Default)]
+pub(super) struct Small {
+    workspace: Workspace,
+    events: Vec<Event>,
+    triangles: Vec<u32>,
+}
+
+/// Scratch holds this many times the lists of the subtree's root. Children and their children need
+/// about twice as much as their parent; straddlers need more, and a node that finds no room
+/// gets new scratch.
+const SCRATCH: usize = 4;
+
+/// Builds the subtree of a node.
+pub(super) fn build(context: &Context, set: Set, node: Node) -> Result<Growth, BuildError> {
+    context.meter.check_cancelled()?;
+    let idle = || context.idle.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let mut small = idle().pop().unwrap_or_default();
+    small.reserve(context, set.triangles.len())?;
+    let mut growth = Growth::default();
+    let scratch = Scratch { triangles: &mut small.triangles, events: &mut small.events };
+    let mut subtree = Subtree { context, workspace: &mut small.workspace, growth: &mut growth };
+    subtree.node(set, node, scratch)?;
+    idle().push(small);
+    context.meter.charge("tree", growth.capacity_bytes())?;
+    context.meter.advance(node.share);
+    growth.check_size()?;
+    Ok(growth)
+}
+
+impl Small {
+    fn reserve(&mut self, context: &Context, count: usize) -> Result<(), BuildError> {
+        let (events, triangles) = room_sizes(SCRATCH * count);
+        let more = |len: usize, now: usize| len.saturating_sub(now);
+        let bytes = more(events, self.events.len()) * size_of::<Event>()
+            + more(triangles, self.triangles.len()) * size_of::<u32>();
+        context.meter.charge("small subtree", bytes)?;
+        if events > self.events.len() {
+            self.events = bytemuck::allocation::zeroed_vec(events);
+        }
+        if triangles > self.triangles.len() {
+            self.triangles = bytemuck::allocation::zeroed_vec(triangles);
+        }
+        Ok(())
+    }
+}
+
+struct Subtree<'a> {
+    context: &'a Context<'a>,
+    workspace: &'a mut Workspace,
+    growth: &'a mut Growth,
+}
+
+impl Subtree<'_> {
+    fn node(&mut self, set: Set, node: Node, mut scratch: Scratch) -> Result<(), BuildError> {
+        let count = set.triangles.len();
+        let Some(cost) = self.context.prices(&node, count) else {
+            self.growth.push_leaf(set.triangles);
+            return Ok(());
+        };
+        let by_axis = [0, 1, 2].map(|axis| sweep(&set, &node.bounds, &cost, axis));
+        let Some(candidate) = cheapest(by_axis, cost.leaf(count)) else {
+            self.growth.push_leaf(set.triangles);
+            return Ok(());
+        };
+        let sizes = self.workspace.assign(&set, &node.bounds, &candidate, &cost, self.context);
+        let counts = [sizes.left, sizes.right];
+        let [left, right] = node.cut(candidate.axis, candidate.position, counts);
+        let place = self.growth.push_inner(candidate.axis, candidate.position);
+        if sizes.is_cut_off() {
+            let (left_set, right_set) =
+                if sizes.left == 0 { (EMPTY, set) } else { (set, EMPTY) };
+            self.node(left_set, left, scratch.reborrow())?;
+            self.growth.set_right(place);
+            return self.node(right_set, right, scratch);
+        }
+        let children = [left, right];
+        if scratch.holds(counts) {
+            return self.children(&set, scratch, counts, children, place);
+        }
+        let mut more = Small::default();
+        more.reserve(self.context, sizes.left + sizes.right)?;
+        let scratch = Scratch { triangles: &mut more.triangles, events: &mut more.events };
+        self.children(&set, scratch, counts, children, place)?;
+        self.context.meter.release(more.bytes());
+        Ok(())
+    }
+
+    /// Splits the node's lists and builds both children, below the inner node at `place`.
+    fn children(
+        &mut self,
+        set: &Set,
+        scratch: Scratch,
+        counts: [usize; 2],
+        [left, right]: [Node; 2],
+        place: usize,
+    ) -> Result<(), BuildError> {
+        let (sets, mut scratch) = self.split(set, scratch, counts);
+        self.node(sets[0], left, scratch.reborrow())?;
+        self.growth.set_right(place);
+        self.node(sets[1], right, scratch)
+    }
+
+    /// The lists of the two children, and the scratch that is left.
+    fn split<'s>(
+        &mut self,
+        set: &Set,
+        scratch: Scratch<'s>,
+        [left, right]: [usize; 2],
+    ) -> ([Set<'s>; 2], Scratch<'s>) {
+        let (mut left_room, scratch) = Room::carve(scratch, left);
+        let (mut right_room, scratch) = Room::carve(scratch, right);
+        self.workspace.name(set, [left_room.triangles, right_room.triangles]);
+        let mut lengths = [[0; 3]; 2];
+        for axis in 0..3 {
+            let lists = [&mut *left_room.events[axis], &mut *right_room.events[axis]];
+            [lengths[0][axis], lengths[1][axis]] =
+                self.workspace.split_axis(axis, set.events[axis], lists);
+        }
+        let sets =
+            [left_room.into_set(left, lengths[0]), right_room.into_set(right, lengths[1])];
+        (sets, scratch)
+    }
+}
+
+impl Small {
+    fn bytes(&self) -> usize {
+        self.events.len() * size_of::<Event>() + self.triangles.len() * size_of::<u32>()
+    }
+}
+
+/// The lists of a node without references.
+const EMPTY: Set<'static> = Set { triangles: &[], events: [&[], &[], &[]] };

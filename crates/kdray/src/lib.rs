@@ -1,0 +1,11 @@
+//! Exact-SAH kd-trees over triangles, and the ray queries that such a tree allows.
+
+pub mod build;
+pub mod geometry;
+pub mod trace;
+pub mod tree;
+
+pub use build::{BuildError, BuildOptions, BuildReport, Builder, Cost};
+pub use geometry::{Aabb, Frame, Hit, Mesh, MeshError, Ray};
+pub use trace::{Counts, Tracer};
+pub use tree::{FileError, Node, Stats, Tree, Violation};

@@ -1,0 +1,87 @@
+//! What a ray's traversal needs, worked out once.
+
+use crate::geometry::{Aabb, Ray};
+
+/// A ray that will be intersected with triangles: the shear that takes it to the z axis [WBA13].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shear {
+    /// Axes in the order x, y, z of ray space; z is where the direction is largest.
+    pub(super) axes: [usize; 3],
+    pub(super) origin: [f32; 3],
+    /// What x and y lose per unit of z.
+    pub(super) shear: [f32; 2],
+    /// `t` per unit of z.
+    pub(super) t_per_z: f32,
+}
+
+impl Shear {
+    #[inline(always)]
+    pub(super) fn new(ray: &Ray) -> Self {
+        let [x, y, z] = ray.direction.map(f32::abs);
+        let largest = if x > y { if x > z { 0 } else { 2 } } else if y > z { 1 } else { 2 };
+        let direction = ray.direction;
+        // Two axes change places where the ray looks down, so that windings keep their sense.
+        let axes = match (largest, direction[largest] < 0.0) {
+            (0, false) => [1, 2, 0],
+            (0, true) => [2, 1, 0],
+            (1, false) => [2, 0, 1],
+            (1, true) => [0, 2, 1],
+            (_, false) => [0, 1, 2],
+            (_, true) => [1, 0, 2],
+        };
+        let [x, y, z] = axes.map(|axis| direction[axis]);
+        let origin = axes.map(|axis| ray.origin[axis]);
+        Self { axes, origin, shear: [x / z, y / z], t_per_z: 1.0 / z }
+    }
+}
+
+/// A ray that will be clipped against planes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slabs {
+    pub(super) origin: [f32; 3],
+    /// One over the direction; huge where the direction is zero.
+    pub(super) inverse: [f32; 3],
+    /// How much of `t` a plane is thick.
+    pub(super) thickness: [f32; 3],
+}
+
+/// Rounding moves a ray, as its triangle tests see it, by less than this many half ulps of the
+/// largest coordinate in play: three for translating and shearing a corner, and those of `t`.
+const THICKNESS: f32 = 16.0 * 0.5 * f32::EPSILON;
+
+/// Directions are not let be smaller, relative to their largest component.
+const SMALLEST: f32 = 1e-25;
+
+impl Slabs {
+    /// Planes get a thickness that covers every rounding of the triangle tests and of the planes'
+    /// own `t`, so that the leaf of every hit is visited: a leaf is entered if the ray meets its
+    /// box grown by that thickness.
+    #[inline(always)]
+    pub(super) fn new(ray: &Ray, reach: f32) -> Self {
+        let magnitude = |v: [f32; 3]| v[0].abs().max(v[1].abs()).max(v[2].abs());
+        let smallest = SMALLEST * magnitude(ray.direction);
+        let inverse = ray.direction.map(|d| {
+            1.0 / if d.abs() < smallest { smallest.copysign(d) } else { d }
+        });
+        let thickness = THICKNESS * (magnitude(ray.origin) + reach);
+        let thickness = inverse.map(|inverse| thickness * inverse.abs());
+        Self { origin: ray.origin, inverse, thickness }
+    }
+
+    /// The part of `t_min..=t_max` inside `bounds`; empty if the first is larger.
+    #[inline(always)]
+    pub(super) fn clip(&self, bounds: &Aabb, mut t_min: f32, mut t_max: f32) -> (f32, f32) {
+        for axis in 0..3 {
+            let lower = (bounds.lower[axis] - self.origin[axis]) * self.inverse[axis];
+            let upper = (bounds.upper[axis] - self.origin[axis]) * self.inverse[axis];
+            t_min = t_min.max(lower.min(upper) - self.thickness[axis]);
+            t_max = t_max.min(lower.max(upper) + self.thickness[axis]);
+        }
+        (t_min, t_max)
+    }
+}
+
+/// The largest coordinate of a box.
+pub(super) fn reach(bounds: &Aabb) -> f32 {
+    bounds.lower.iter().chain(&bounds.upper).fold(0.0, |largest, v| v.abs().max(largest))
+}
