@@ -25,7 +25,11 @@ pub struct Cost {
 impl Default for Cost {
     /// The prices that traced fastest for their memory; `bench/` has the measurement.
     fn default() -> Self {
-        Self { traversal: 2.0, intersect: 1.0, empty_bonus: 0.2 }
+        Self {
+            traversal: 2.0,
+            intersect: 1.0,
+            empty_bonus: 0.2,
+        }
     }
 }
 
@@ -69,12 +73,17 @@ impl NodeCost {
     /// Price of a plane at distances `below` and `above` from the two faces of the node, with
     /// `left` and `right` references on its sides.
     #[inline(always)]
-    pub(crate) fn split(&self, axis: usize, [below, above]: [f32; 2], [left, right]: [i32; 2]) -> f32 {
+    pub(crate) fn split(
+        &self,
+        axis: usize,
+        [below, above]: [f32; 2],
+        [left, right]: [i32; 2],
+    ) -> f32 {
         let volumes = left as f32 * below + right as f32 * above;
         let tests = self.face[axis] * (left + right) as f32 + self.girth[axis] * volumes;
         let price = self.step + tests;
         let empty = (left == 0) | (right == 0);
-        if empty { self.empty_factor * price } else { price }
+        price * if empty { self.empty_factor } else { 1.0 }
     }
 
     /// Whether no plane can be cheaper than a leaf, whatever the counts: the traversal step alone
@@ -90,12 +99,25 @@ mod tests {
 
     #[test]
     fn a_unit_cube_cut_in_half() {
-        let cost = Cost { traversal: 1.0, intersect: 2.0, empty_bonus: 0.5 };
-        let cube = Aabb { lower: [0.0; 3], upper: [1.0; 3] };
+        let cost = Cost {
+            traversal: 1.0,
+            intersect: 2.0,
+            empty_bonus: 0.5,
+        };
+        let cube = Aabb {
+            lower: [0.0; 3],
+            upper: [1.0; 3],
+        };
         let node = NodeCost::new(&cost, &cube);
         // Half areas: 3 for the cube, 2 for each half.
         assert_eq!(node.leaf(5), 2.0 * 5.0 * 3.0);
-        assert_eq!(node.split(0, [0.5, 0.5], [3, 4]), 3.0 + 2.0 * (3.0 * 2.0 + 4.0 * 2.0));
-        assert_eq!(node.split(2, [0.5, 0.5], [0, 4]), 0.5 * (3.0 + 2.0 * 4.0 * 2.0));
+        assert_eq!(
+            node.split(0, [0.5, 0.5], [3, 4]),
+            3.0 + 2.0 * (3.0 * 2.0 + 4.0 * 2.0)
+        );
+        assert_eq!(
+            node.split(2, [0.5, 0.5], [0, 4]),
+            0.5 * (3.0 + 2.0 * 4.0 * 2.0)
+        );
     }
 }

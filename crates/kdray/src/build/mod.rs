@@ -42,6 +42,8 @@ pub(crate) fn build(
         Builder::Exact => exact::build(mesh, &limits, &meter),
     }?;
     meter.finish();
-    let report = BuildReport { peak_bytes: meter.peak_bytes() };
+    let report = BuildReport {
+        peak_bytes: meter.peak_bytes(),
+    };
     Ok((Tree::from_growth(mesh, growth, options.cost), report))
 }

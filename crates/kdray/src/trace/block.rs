@@ -1,6 +1,6 @@
 //! Eight triangles that are tested together.
 
-use super::intersect::{Crossing, tied_crossing};
+use super::intersect::{Crossing, crossing};
 use super::prepare::Shear;
 use crate::geometry::Hit;
 
@@ -18,9 +18,16 @@ pub(super) struct Block {
     triangles: [u32; LANES],
 }
 
+/// Marks the last block of a leaf, in its last index.
+const LAST: u32 = 1 << 31;
+
 impl Block {
     /// A block of `triangles`, which are not empty and at most eight.
-    pub(super) fn new(triangles: &[u32], corners_of: impl Fn(u32) -> [[f32; 3]; 3]) -> Self {
+    pub(super) fn new(
+        triangles: &[u32],
+        is_last: bool,
+        corners_of: impl Fn(u32) -> [[f32; 3]; 3],
+    ) -> Self {
         let mut block: Self = bytemuck::Zeroable::zeroed();
         for lane in 0..LANES {
             let triangle = triangles.get(lane).copied().unwrap_or(triangles[0]);
@@ -32,79 +39,74 @@ impl Block {
             }
             block.triangles[lane] = triangle;
         }
+        block.triangles[LANES - 1] |= if is_last { LAST } else { 0 };
         block
     }
 
-    /// Hands every hit of the block with `t_min <= t <= t_max` to `found`.
-    ///
-    /// The arithmetic is that of [`intersect`](super::intersect()), lane by lane.
+    /// Whether the leaf has no more blocks after this.
     #[inline(always)]
-    pub(super) fn intersect(
-        &self,
-        shear: &Shear,
-        [t_min, t_max]: [f32; 2],
-        mut found: impl FnMut(Hit),
-    ) {
-        let points = [0, 1, 2].map(|corner| self.points(shear, corner));
-        let edges =
-            [edges(&points[2], &points[1]), edges(&points[0], &points[2]), edges(&points[1], &points[0])];
-        let mut inside = inside(&edges);
-        while inside != 0 {
-            let lane = inside.trailing_zeros() as usize;
-            inside &= inside - 1;
-            let Some(Crossing { t, u, v }) = crossing(shear, &points, &edges, lane) else { continue };
-            if t_min <= t && t <= t_max {
-                found(Hit { t, triangle: self.triangles[lane], u, v });
-            }
-        }
+    pub(super) fn is_last(&self) -> bool {
+        self.triangles[LANES - 1] & LAST != 0
     }
 
-    /// A corner of all triangles in ray space, as [`Shear::point`] gives it.
+    /// A bit for every lane that the line of the ray may cross: all where no SIMD says better.
     #[inline(always)]
-    fn points(&self, shear: &Shear, corner: usize) -> [Lanes; 3] {
-        let mut points = [[0.0; LANES]; 3];
-        let [x, y, z] = shear.axes.map(|axis| &self.corners[corner][axis]);
-        for lane in 0..LANES {
-            let point = shear.point([x[lane], y[lane], z[lane]]);
-            points[0][lane] = point[0];
-            points[1][lane] = point[1];
-            points[2][lane] = point[2];
-        }
-        points
+    pub(super) fn all(&self) -> u32 {
+        (1 << LANES) - 1
     }
-}
 
-#[inline(always)]
-fn edges(p: &[Lanes; 3], q: &[Lanes; 3]) -> Lanes {
-    let mut edges = [0.0; LANES];
-    for lane in 0..LANES {
-        edges[lane] = p[0][lane] * q[1][lane] - p[1][lane] * q[0][lane];
+    /// A bit for every lane that the line of the ray may cross: those whose edge functions do not
+    /// differ in sign, zeros having any. The arithmetic is that of [`crossing`].
+    #[cfg(target_arch = "x86_64")]
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(super) fn filter_avx2(&self, shear: &Shear) -> u32 {
+        use std::arch::x86_64::*;
+        // SAFETY: rows are eight lanes, aligned like the block.
+        let row = |corner: usize, axis: usize| unsafe {
+            _mm256_load_ps(self.corners[corner][shear.axes[axis]].as_ptr())
+        };
+        let [shear_x, shear_y] = [
+            _mm256_set1_ps(shear.shear[0]),
+            _mm256_set1_ps(shear.shear[1]),
+        ];
+        let x0 = _mm256_set1_ps(shear.origin[0]);
+        let y0 = _mm256_set1_ps(shear.origin[1]);
+        let z0 = _mm256_set1_ps(shear.origin[2]);
+        let point = |corner: usize| {
+            let z = _mm256_sub_ps(row(corner, 2), z0);
+            let x = _mm256_sub_ps(row(corner, 0), x0);
+            let y = _mm256_sub_ps(row(corner, 1), y0);
+            let x = _mm256_sub_ps(x, _mm256_mul_ps(shear_x, z));
+            let y = _mm256_sub_ps(y, _mm256_mul_ps(shear_y, z));
+            (x, y)
+        };
+        let edge = |p: (__m256, __m256), q: (__m256, __m256)| {
+            _mm256_sub_ps(_mm256_mul_ps(p.0, q.1), _mm256_mul_ps(p.1, q.0))
+        };
+        let (a, b, c) = (point(0), point(1), point(2));
+        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
+        let zero = _mm256_setzero_ps();
+        let lowest = _mm256_min_ps(_mm256_min_ps(u, v), w);
+        let highest = _mm256_max_ps(_mm256_max_ps(u, v), w);
+        let positive = _mm256_cmp_ps::<_CMP_GE_OQ>(lowest, zero);
+        let negative = _mm256_cmp_ps::<_CMP_LE_OQ>(highest, zero);
+        _mm256_movemask_ps(_mm256_or_ps(positive, negative)) as u32
     }
-    edges
-}
 
-/// A bit for every lane whose edge functions do not differ in sign; zeros have any.
-#[inline(always)]
-fn inside(edges: &[Lanes; 3]) -> u32 {
-    let mut inside = [0_u32; LANES];
-    for lane in 0..LANES {
-        let [u, v, w] = [edges[0][lane], edges[1][lane], edges[2][lane]];
-        let positive = (u >= 0.0) & (v >= 0.0) & (w >= 0.0);
-        let negative = (u <= 0.0) & (v <= 0.0) & (w <= 0.0);
-        inside[lane] = u32::from(positive | negative) << lane;
+    /// The hit of the triangle in a lane, at any `t`.
+    #[inline(always)]
+    pub(super) fn hit(&self, lane: usize, shear: &Shear) -> Option<Hit> {
+        let corner = |corner: usize| {
+            let [x, y, z] = &self.corners[corner];
+            [x[lane], y[lane], z[lane]]
+        };
+        let Crossing { t, u, v } = crossing(shear, &[corner(0), corner(1), corner(2)])?;
+        Some(Hit {
+            t,
+            triangle: self.triangles[lane] & !LAST,
+            u,
+            v,
+        })
     }
-    inside.iter().fold(0, |bits, bit| bits | bit)
-}
-
-/// Where one lane is crossed, if it is.
-#[inline(always)]
-fn crossing(shear: &Shear, points: &[[Lanes; 3]; 3], edges: &[Lanes; 3], lane: usize) -> Option<Crossing> {
-    let [u, v, w] = [edges[0][lane], edges[1][lane], edges[2][lane]];
-    if u == 0.0 || v == 0.0 || w == 0.0 {
-        let point = |corner: usize| [0, 1, 2].map(|axis| points[corner][axis][lane]);
-        return tied_crossing(shear, [point(0), point(1), point(2)]);
-    }
-    let determinant = u + v + w;
-    let height = (u * points[0][2][lane] + v * points[1][2][lane]) + w * points[2][2][lane];
-    Some(Crossing { t: height / determinant, u: v / determinant, v: w / determinant })
 }

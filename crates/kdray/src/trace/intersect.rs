@@ -22,23 +22,7 @@ pub fn intersect(ray: &Ray, triangle: u32, corners: &[[f32; 3]; 3]) -> Option<Hi
     if !ray.is_valid() {
         return None;
     }
-    let shear = Shear::new(ray);
-    let point = |corner: &[f32; 3]| shear.point(shear.axes.map(|axis| corner[axis]));
-    let [a, b, c] = [point(&corners[0]), point(&corners[1]), point(&corners[2])];
-    let edges = [edge(c, b), edge(a, c), edge(b, a)];
-    let crossing = if edges.contains(&0.0) {
-        tied_crossing(&shear, [a, b, c])?
-    } else {
-        let positive = edges.map(|edge| edge > 0.0);
-        if positive != [edges[0] > 0.0; 3] || edges.iter().any(|edge| edge.is_nan()) {
-            return None;
-        }
-        let [u, v, w] = edges;
-        let determinant = u + v + w;
-        let height = (u * a[2] + v * b[2]) + w * c[2];
-        Crossing { t: height / determinant, u: v / determinant, v: w / determinant }
-    };
-    let Crossing { t, u, v } = crossing;
+    let Crossing { t, u, v } = crossing(&Shear::new(ray), corners)?;
     (ray.t_min <= t && t <= ray.t_max).then_some(Hit { t, triangle, u, v })
 }
 
@@ -50,12 +34,42 @@ pub(super) struct Crossing {
     pub(super) v: f32,
 }
 
+/// Where the line of the ray crosses the triangle, at any `t`.
+#[inline(always)]
+pub(super) fn crossing(shear: &Shear, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
+    let a = shear.point(&corners[0]);
+    let b = shear.point(&corners[1]);
+    let c = shear.point(&corners[2]);
+    let [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];
+    if (u == 0.0) | (v == 0.0) | (w == 0.0) {
+        return tied_crossing([a, b, c]);
+    }
+    let positive = (u > 0.0) & (v > 0.0) & (w > 0.0);
+    let negative = (u < 0.0) & (v < 0.0) & (w < 0.0);
+    if !(positive | negative) {
+        return None;
+    }
+    let determinant = u + v + w;
+    let height = (u * a[2] + v * b[2]) + w * c[2];
+    Some(Crossing {
+        t: height / determinant,
+        u: v / determinant,
+        v: w / determinant,
+    })
+}
+
 impl Shear {
-    /// A corner, its axes in order, in ray space; its z is in units of `t`.
+    /// A corner in ray space; its z is in units of `t`.
     #[inline(always)]
-    pub(super) fn point(&self, corner: [f32; 3]) -> [f32; 3] {
-        let [x, y, z] = [0, 1, 2].map(|axis| corner[axis] - self.origin[axis]);
-        [x - self.shear[0] * z, y - self.shear[1] * z, self.t_per_z * z]
+    fn point(&self, corner: &[f32; 3]) -> [f32; 3] {
+        let x = corner[self.axes[0]] - self.origin[0];
+        let y = corner[self.axes[1]] - self.origin[1];
+        let z = corner[self.axes[2]] - self.origin[2];
+        [
+            x - self.shear[0] * z,
+            y - self.shear[1] * z,
+            self.t_per_z * z,
+        ]
     }
 }
 
@@ -66,10 +80,13 @@ fn edge(p: [f32; 3], q: [f32; 3]) -> f32 {
 
 /// The crossing of a triangle of which at least one edge function is zero in single precision.
 #[cold]
-pub(super) fn tied_crossing(shear: &Shear, [a, b, c]: [[f32; 3]; 3]) -> Option<Crossing> {
-    let _ = shear;
+fn tied_crossing([a, b, c]: [[f32; 3]; 3]) -> Option<Crossing> {
     let edges = [exact_edge(c, b), exact_edge(a, c), exact_edge(b, a)];
-    let sides = [side(edges[0], c, b)?, side(edges[1], a, c)?, side(edges[2], b, a)?];
+    let sides = [
+        side(edges[0], c, b)?,
+        side(edges[1], a, c)?,
+        side(edges[2], b, a)?,
+    ];
     if sides != [sides[0]; 3] {
         return None;
     }
@@ -80,7 +97,11 @@ pub(super) fn tied_crossing(shear: &Shear, [a, b, c]: [[f32; 3]; 3]) -> Option<C
     }
     let height = (u * f64::from(a[2]) + v * f64::from(b[2])) + w * f64::from(c[2]);
     let share = |value: f64| (value / determinant) as f32;
-    Some(Crossing { t: share(height), u: share(v), v: share(w) })
+    Some(Crossing {
+        t: share(height),
+        u: share(v),
+        v: share(w),
+    })
 }
 
 /// An edge function whose sign is exact: its products are.
@@ -110,20 +131,37 @@ mod tests {
     #[test]
     fn a_hit_has_barycentric_coordinates() {
         let ray = Ray::new([0.25, 0.5, 2.0], [0.0, 0.0, -4.0]);
-        assert_eq!(intersect(&ray, 3, &CORNERS), Some(Hit { t: 0.5, triangle: 3, u: 0.25, v: 0.5 }));
+        assert_eq!(
+            intersect(&ray, 3, &CORNERS),
+            Some(Hit {
+                t: 0.5,
+                triangle: 3,
+                u: 0.25,
+                v: 0.5
+            })
+        );
     }
 
     #[test]
     fn both_sides_are_hit() {
         let ray = Ray::new([0.25, 0.5, -2.0], [0.0, 0.0, 4.0]);
-        assert_eq!(intersect(&ray, 0, &CORNERS).map(|hit| (hit.t, hit.u, hit.v)), Some((0.5, 0.25, 0.5)));
+        assert_eq!(
+            intersect(&ray, 0, &CORNERS).map(|hit| (hit.t, hit.u, hit.v)),
+            Some((0.5, 0.25, 0.5))
+        );
     }
 
     #[test]
     fn hits_outside_the_interval_do_not_count() {
-        let ray = Ray { t_min: 0.6, ..Ray::new([0.25, 0.5, 2.0], [0.0, 0.0, -4.0]) };
+        let ray = Ray {
+            t_min: 0.6,
+            ..Ray::new([0.25, 0.5, 2.0], [0.0, 0.0, -4.0])
+        };
         assert_eq!(intersect(&ray, 0, &CORNERS), None);
-        let ray = Ray { t_max: 0.4, ..Ray::new([0.25, 0.5, 2.0], [0.0, 0.0, -4.0]) };
+        let ray = Ray {
+            t_max: 0.4,
+            ..Ray::new([0.25, 0.5, 2.0], [0.0, 0.0, -4.0])
+        };
         assert_eq!(intersect(&ray, 0, &CORNERS), None);
     }
 
@@ -131,13 +169,25 @@ mod tests {
     #[test]
     fn shared_edges_and_vertices_are_hit_once() {
         let hub = [0.0, 0.0, 0.0];
-        let rim = [[1.0, 0.0, 0.1], [0.5, 1.0, 0.0], [-1.0, 0.5, 0.2], [-0.5, -1.0, 0.0], [1.0, -1.0, -0.1]];
+        let rim = [
+            [1.0, 0.0, 0.1],
+            [0.5, 1.0, 0.0],
+            [-1.0, 0.5, 0.2],
+            [-0.5, -1.0, 0.0],
+            [1.0, -1.0, -0.1],
+        ];
         let fan: Vec<_> = (0..5).map(|i| [hub, rim[i], rim[(i + 1) % 5]]).collect();
-        let targets = rim.map(|[x, y, _]| [0.5 * x, 0.5 * y]).into_iter().chain([[0.0, 0.0]]);
+        let targets = rim
+            .map(|[x, y, _]| [0.5 * x, 0.5 * y])
+            .into_iter()
+            .chain([[0.0, 0.0]]);
         for [x, y] in targets {
             for z in [1.0, -1.0] {
                 let ray = Ray::new([x, y, 3.0 * z], [0.0, 0.0, -z]);
-                let hits = fan.iter().filter(|corners| intersect(&ray, 0, corners).is_some()).count();
+                let hits = fan
+                    .iter()
+                    .filter(|corners| intersect(&ray, 0, corners).is_some())
+                    .count();
                 assert_eq!(hits, 1, "at {x} {y} from {z}");
             }
         }
@@ -146,7 +196,10 @@ mod tests {
     #[test]
     fn rays_without_meaning_hit_nothing() {
         for direction in [[0.0; 3], [f32::NAN; 3], [f32::INFINITY, 0.0, 0.0]] {
-            assert_eq!(intersect(&Ray::new([0.25, 0.5, 2.0], direction), 0, &CORNERS), None);
+            assert_eq!(
+                intersect(&Ray::new([0.25, 0.5, 2.0], direction), 0, &CORNERS),
+                None
+            );
         }
     }
 }

@@ -2,6 +2,28 @@
 
 use crate::geometry::{Aabb, Ray};
 
+/// A ray and all that its traversal needs.
+pub(super) struct Prepared {
+    pub(super) shear: Shear,
+    pub(super) slabs: Slabs,
+    pub(super) t_min: f32,
+    pub(super) t_max: f32,
+}
+
+impl Prepared {
+    /// Prepares a ray for a scene whose largest coordinate is `reach`.
+    #[inline(always)]
+    pub(super) fn new(ray: &Ray, reach: f32) -> Self {
+        let (shear, slabs) = (Shear::new(ray), Slabs::new(ray, reach));
+        Self {
+            shear,
+            slabs,
+            t_min: ray.t_min,
+            t_max: ray.t_max,
+        }
+    }
+}
+
 /// A ray that will be intersected with triangles: the shear that takes it to the z axis [WBA13].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shear {
@@ -18,7 +40,13 @@ impl Shear {
     #[inline(always)]
     pub(super) fn new(ray: &Ray) -> Self {
         let [x, y, z] = ray.direction.map(f32::abs);
-        let largest = if x > y { if x > z { 0 } else { 2 } } else if y > z { 1 } else { 2 };
+        let largest = if x > y {
+            if x > z { 0 } else { 2 }
+        } else if y > z {
+            1
+        } else {
+            2
+        };
         let direction = ray.direction;
         // Two axes change places where the ray looks down, so that windings keep their sense.
         let axes = match (largest, direction[largest] < 0.0) {
@@ -29,9 +57,18 @@ impl Shear {
             (_, false) => [0, 1, 2],
             (_, true) => [1, 0, 2],
         };
-        let [x, y, z] = axes.map(|axis| direction[axis]);
-        let origin = axes.map(|axis| ray.origin[axis]);
-        Self { axes, origin, shear: [x / z, y / z], t_per_z: 1.0 / z }
+        let [x, y, z] = [direction[axes[0]], direction[axes[1]], direction[axes[2]]];
+        let origin = [
+            ray.origin[axes[0]],
+            ray.origin[axes[1]],
+            ray.origin[axes[2]],
+        ];
+        Self {
+            axes,
+            origin,
+            shear: [x / z, y / z],
+            t_per_z: 1.0 / z,
+        }
     }
 }
 
@@ -43,6 +80,8 @@ pub(super) struct Slabs {
     pub(super) inverse: [f32; 3],
     /// How much of `t` a plane is thick.
     pub(super) thickness: [f32; 3],
+    /// A bit for every axis along which the ray goes down.
+    pub(super) backward: u32,
 }
 
 /// Rounding moves a ray, as its triangle tests see it, by less than this many half ulps of the
@@ -58,14 +97,28 @@ impl Slabs {
     /// box grown by that thickness.
     #[inline(always)]
     pub(super) fn new(ray: &Ray, reach: f32) -> Self {
-        let magnitude = |v: [f32; 3]| v[0].abs().max(v[1].abs()).max(v[2].abs());
-        let smallest = SMALLEST * magnitude(ray.direction);
-        let inverse = ray.direction.map(|d| {
-            1.0 / if d.abs() < smallest { smallest.copysign(d) } else { d }
-        });
-        let thickness = THICKNESS * (magnitude(ray.origin) + reach);
-        let thickness = inverse.map(|inverse| thickness * inverse.abs());
-        Self { origin: ray.origin, inverse, thickness }
+        let magnitude = |v: &[f32; 3]| v[0].abs().max(v[1].abs()).max(v[2].abs());
+        let smallest = SMALLEST * magnitude(&ray.direction);
+        let thickness = THICKNESS * (magnitude(&ray.origin) + reach);
+        let mut slabs = Self {
+            origin: ray.origin,
+            inverse: [0.0; 3],
+            thickness: [0.0; 3],
+            backward: 0,
+        };
+        for axis in 0..3 {
+            let d = ray.direction[axis];
+            let inverse = 1.0
+                / if d.abs() < smallest {
+                    smallest.copysign(d)
+                } else {
+                    d
+                };
+            slabs.inverse[axis] = inverse;
+            slabs.thickness[axis] = thickness * inverse.abs();
+            slabs.backward |= u32::from(inverse < 0.0) << axis;
+        }
+        slabs
     }
 
     /// The part of `t_min..=t_max` inside `bounds`; empty if the first is larger.
@@ -83,5 +136,9 @@ impl Slabs {
 
 /// The largest coordinate of a box.
 pub(super) fn reach(bounds: &Aabb) -> f32 {
-    bounds.lower.iter().chain(&bounds.upper).fold(0.0, |largest, v| v.abs().max(largest))
+    bounds
+        .lower
+        .iter()
+        .chain(&bounds.upper)
+        .fold(0.0, |largest, v| v.abs().max(largest))
 }

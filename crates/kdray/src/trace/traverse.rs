@@ -1,86 +1,117 @@
 //! Visit the leaves along a ray from front to back, with a stack [PH04].
 
-use std::mem::MaybeUninit;
+use super::block::Block;
+use super::prepare::Prepared;
+use super::stack::Stack;
+use super::step;
+use super::wide::{Child, Layout, Wide};
+use crate::geometry::{Aabb, Hit};
 
-use super::prepare::Slabs;
-use crate::build::MAX_DEPTH;
-use crate::geometry::Aabb;
-use crate::tree::{Kind, Node};
+/// Sees what a ray comes to.
+pub(super) trait Visitor {
+    /// A hit of a leaf, at any `t`. Gives the `t` up to which there is more to see.
+    fn hit(&mut self, hit: Hit) -> f32;
 
-/// A subtree to be visited, and the part of the ray inside it.
-#[derive(Clone, Copy)]
-struct Later {
-    node: usize,
-    t_min: f32,
-    t_max: f32,
+    /// An inner node.
+    #[inline(always)]
+    fn step(&mut self) {}
+
+    /// A leaf.
+    #[inline(always)]
+    fn leaf(&mut self) {}
+
+    /// A block of a leaf.
+    #[inline(always)]
+    fn test(&mut self) {}
 }
 
-/// What a visitor wants after a leaf.
-pub(super) enum Next {
-    /// Go on up to this `t`.
-    Until(f32),
-    /// No more leaves.
-    Stop,
-}
+/// No `t` is as low: the visitor has seen enough.
+pub(super) const ENOUGH: f32 = f32::NEG_INFINITY;
 
-/// Calls `leaf` for the leaves that the ray meets in `t_min..=t_max`, from front to back, with
-/// their blocks, and `step` for every inner node.
+/// Shows `visitor` what the ray comes to, leaf by leaf from front to back.
 ///
-/// Planes are as thick as [`Slabs`] says, so a ray near a plane visits both sides.
+/// Planes are as thick as [`Slabs`](super::prepare::Slabs) says, so a ray near a plane visits
+/// both sides.
+pub(super) fn traverse(layout: &Layout, bounds: &Aabb, ray: &Prepared, visitor: &mut impl Visitor) {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has AVX2.
+        return unsafe { traverse_avx2(layout, bounds, ray, visitor) };
+    }
+    traverse_with(
+        layout,
+        bounds,
+        ray,
+        visitor,
+        |wide, interval, stack| {
+            step::step(wide, &ray.slabs, interval, stack);
+        },
+        Block::all,
+    );
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+fn traverse_avx2(layout: &Layout, bounds: &Aabb, ray: &Prepared, visitor: &mut impl Visitor) {
+    let lanes = step::avx2::Lanes::new(&ray.slabs);
+    let step = |wide: &Wide, interval: [f32; 2], stack: &mut Stack| {
+        step::avx2::step(wide, &ray.slabs, &lanes, interval, stack);
+    };
+    traverse_with(layout, bounds, ray, visitor, step, |block| {
+        block.filter_avx2(&ray.shear)
+    });
+}
+
+/// The traversal, with a way to step down and one to filter the triangles of a block.
 #[inline(always)]
-pub(super) fn traverse(
-    nodes: &[Node],
+fn traverse_with(
+    layout: &Layout,
     bounds: &Aabb,
-    slabs: &Slabs,
-    [t_min, t_max]: [f32; 2],
-    mut step: impl FnMut(),
-    mut leaf: impl FnMut(usize, usize) -> Next,
+    ray: &Prepared,
+    visitor: &mut impl Visitor,
+    step: impl Fn(&Wide, [f32; 2], &mut Stack),
+    filter: impl Fn(&Block) -> u32,
 ) {
-    let (mut t_min, mut t_max) = slabs.clip(bounds, t_min, t_max);
+    let (t_min, t_max) = ray.slabs.clip(bounds, ray.t_min, ray.t_max);
     if t_min > t_max {
         return;
     }
-    let mut stack = [const { MaybeUninit::<Later>::uninit() }; MAX_DEPTH as usize + 1];
-    let mut height = 0;
-    let mut node = 0;
-    loop {
-        match nodes[node].kind() {
-            Kind::Inner { axis, position, right } => {
-                step();
-                let t = (position - slabs.origin[axis]) * slabs.inverse[axis];
-                let thickness = slabs.thickness[axis];
-                let forward = slabs.inverse[axis] > 0.0;
-                let (near, far) = if forward { (node + 1, right) } else { (right, node + 1) };
-                if t_max < t - thickness {
-                    node = near;
-                } else if t_min > t + thickness {
-                    node = far;
-                } else {
-                    let far = Later { node: far, t_min: t_min.max(t - thickness), t_max };
-                    stack[height].write(far);
-                    height += 1;
-                    t_max = t_max.min(t + thickness);
-                    node = near;
-                }
-            }
-            Kind::Leaf { first, count } => {
-                let until = match leaf(first, count) {
-                    Next::Until(until) => until,
-                    Next::Stop => return,
+    let mut until = t_max;
+    let mut stack = Stack::new();
+    stack.push(Child(0), t_min, t_max);
+    while let Some((child, t_min, t_max)) = stack.pop() {
+        if t_min > until {
+            continue;
+        }
+        let Some(mut place) = child.block() else {
+            visitor.step();
+            step(
+                &layout.wides[child.0 as usize],
+                [t_min, t_max.min(until)],
+                &mut stack,
+            );
+            continue;
+        };
+        visitor.leaf();
+        loop {
+            let block = &layout.blocks[place];
+            visitor.test();
+            let mut lanes = filter(block);
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize;
+                lanes &= lanes - 1;
+                let Some(hit) = block.hit(lane, &ray.shear) else {
+                    continue;
                 };
-                loop {
-                    if height == 0 {
-                        return;
-                    }
-                    height -= 1;
-                    // SAFETY: everything below the height was written.
-                    let later = unsafe { stack[height].assume_init() };
-                    (node, t_min, t_max) = (later.node, later.t_min, later.t_max);
-                    if t_min <= until {
-                        break;
-                    }
+                until = until.min(visitor.hit(hit));
+                if until == ENOUGH {
+                    return;
                 }
             }
+            if block.is_last() {
+                break;
+            }
+            place += 1;
         }
     }
 }

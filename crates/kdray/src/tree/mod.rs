@@ -41,9 +41,16 @@ pub(crate) struct Header {
 /// Where nodes and references live.
 #[derive(Clone)]
 enum Storage {
-    Owned { nodes: Vec<Node>, references: Vec<u32> },
+    Owned {
+        nodes: Vec<Node>,
+        references: Vec<u32>,
+    },
     /// A tree file, checked when it was opened.
-    File { bytes: Arc<dyn AsRef<[u8]> + Send + Sync>, nodes: usize, references: usize },
+    File {
+        bytes: Arc<dyn AsRef<[u8]> + Send + Sync>,
+        nodes: usize,
+        references: usize,
+    },
 }
 
 impl Tree {
@@ -93,7 +100,10 @@ impl Tree {
             mesh: mesh.fingerprint(),
         };
         let Growth { nodes, references } = growth;
-        Self { header, storage: Storage::Owned { nodes, references } }
+        Self {
+            header,
+            storage: Storage::Owned { nodes, references },
+        }
     }
 
     /// The nodes, in depth-first order; the root is the first.
@@ -112,7 +122,11 @@ impl Tree {
     pub fn references(&self) -> &[u32] {
         match &self.storage {
             Storage::Owned { references, .. } => references,
-            Storage::File { bytes, nodes, references } => {
+            Storage::File {
+                bytes,
+                nodes,
+                references,
+            } => {
                 let start = nodes * size_of::<Node>();
                 let end = start + references * size_of::<u32>();
                 bytemuck::cast_slice(&file::body((**bytes).as_ref())[start..end])

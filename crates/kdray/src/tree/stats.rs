@@ -24,7 +24,7 @@ pub struct Stats {
     pub leaf_histogram: Vec<usize>,
     /// Inner nodes that a line through the root meets.
     pub e_inner: f64,
-    /// Leaves that it meets, the empty ones not counted.
+    /// Leaves that it meets, the empty ones included.
     pub e_leaf: f64,
     /// References in those leaves.
     pub e_prim: f64,
@@ -59,15 +59,29 @@ impl Tree {
             bytes: self.size_bytes(),
         };
         let (nodes, references) = (self.nodes(), self.references());
-        let result = check::walk(nodes, references, self.bounds(), self.triangle_count(), |index, bounds, depth| {
-            let area = if root_area > 0.0 { bounds.half_area() / root_area } else { 0.0 };
-            stats.depth = stats.depth.max(depth);
-            match nodes[index].kind() {
-                Kind::Inner { .. } => stats.e_inner += area,
-                Kind::Leaf { count, .. } => stats.count_leaf(count, area),
-            }
-        });
-        debug_assert_eq!(result, Ok(()), "builders and file checks only let trees through");
+        let result = check::walk(
+            nodes,
+            references,
+            self.bounds(),
+            self.triangle_count(),
+            |index, bounds, depth| {
+                let area = if root_area > 0.0 {
+                    bounds.half_area() / root_area
+                } else {
+                    0.0
+                };
+                stats.depth = stats.depth.max(depth);
+                match nodes[index].kind() {
+                    Kind::Inner { .. } => stats.e_inner += area,
+                    Kind::Leaf { count, .. } => stats.count_leaf(count, area),
+                }
+            },
+        );
+        debug_assert_eq!(
+            result,
+            Ok(()),
+            "builders and file checks only let trees through"
+        );
         stats
     }
 }
@@ -79,11 +93,8 @@ impl Stats {
             self.leaf_histogram.resize(count + 1, 0);
         }
         self.leaf_histogram[count] += 1;
-        if count == 0 {
-            self.empty_leaves += 1;
-        } else {
-            self.e_leaf += area;
-            self.e_prim += area * count as f64;
-        }
+        self.empty_leaves += usize::from(count == 0);
+        self.e_leaf += area;
+        self.e_prim += area * count as f64;
     }
 }

@@ -22,7 +22,15 @@ pub(super) fn build(context: &Context) -> Result<Growth, BuildError> {
     context.meter.charge("events", bytes)?;
     let [x, y, z] = on_axes(context, |axis| sorted_events(mesh, axis));
     let set = OwnedSet::root(mesh, [x, y, z]);
-    subtree(context, Booked { set, bytes }, Node { bounds: mesh.bounds(), depth: 0, share: 1.0 })
+    subtree(
+        context,
+        Booked { set, bytes },
+        Node {
+            bounds: mesh.bounds(),
+            depth: 0,
+            share: 1.0,
+        },
+    )
 }
 
 /// Runs `work` for the three axes, at the same time if the build has threads.
@@ -48,7 +56,11 @@ fn subtree(context: &Context, owned: Booked, node: Node) -> Result<Growth, Build
     };
     let mut workspace = Workspace::default();
     let sizes = workspace.assign(&set, &node.bounds, &candidate, &cost, context);
-    let children = node.cut(candidate.axis, candidate.position, [sizes.left, sizes.right]);
+    let children = node.cut(
+        candidate.axis,
+        candidate.position,
+        [sizes.left, sizes.right],
+    );
     let (left, right) = if sizes.is_cut_off() {
         cut_off(context, owned, children, sizes)
     } else {
@@ -63,12 +75,7 @@ fn subtree(context: &Context, owned: Booked, node: Node) -> Result<Growth, Build
     joined(context, &candidate, &left?, &right?)
 }
 
-fn cheapest_plane(
-    context: &Context,
-    set: &Set,
-    node: &Node,
-    cost: &NodeCost,
-) -> Option<Candidate> {
+fn cheapest_plane(context: &Context, set: &Set, node: &Node, cost: &NodeCost) -> Option<Candidate> {
     let by_axis = on_axes(context, |axis| sweep(set, &node.bounds, cost, axis));
     cheapest(by_axis, cost.leaf(set.triangles.len()))
 }
@@ -109,11 +116,16 @@ fn split(
     let counts = [sizes.left, sizes.right];
     let bytes = counts.map(OwnedSet::bytes);
     let work_bytes = workspace.bytes(set.triangles.len());
-    context.meter.charge("split", bytes[0] + bytes[1] + work_bytes)?;
+    context
+        .meter
+        .charge("split", bytes[0] + bytes[1] + work_bytes)?;
     let [mut left, mut right] = counts.map(OwnedSet::with_room);
     workspace.name(set, [left.triangles_mut(), right.triangles_mut()]);
     let lists = left.events_mut().into_iter().zip(right.events_mut());
-    let mut axes: Vec<_> = lists.enumerate().map(|(axis, lists)| (axis, lists, [0; 2])).collect();
+    let mut axes: Vec<_> = lists
+        .enumerate()
+        .map(|(axis, lists)| (axis, lists, [0; 2]))
+        .collect();
     let workspace = &workspace;
     let split_axis = |(axis, (left, right), lengths): &mut (usize, (&mut [_], &mut [_]), _)| {
         *lengths = workspace.split_axis(*axis, set.events[*axis], [left, right]);
@@ -129,7 +141,16 @@ fn split(
     right.truncate(sizes.right, lengths.map(|[_, right]| right));
     context.meter.release(work_bytes);
     let [left_bytes, right_bytes] = bytes;
-    Ok([Booked { set: left, bytes: left_bytes }, Booked { set: right, bytes: right_bytes }])
+    Ok([
+        Booked {
+            set: left,
+            bytes: left_bytes,
+        },
+        Booked {
+            set: right,
+            bytes: right_bytes,
+        },
+    ])
 }
 
 /// An inner node over two finished subtrees.
@@ -148,7 +169,9 @@ fn joined(
     growth.append(left);
     growth.set_right(place);
     growth.append(right);
-    context.meter.release(left.capacity_bytes() + right.capacity_bytes());
+    context
+        .meter
+        .release(left.capacity_bytes() + right.capacity_bytes());
     growth.check_size()?;
     Ok(growth)
 }

@@ -22,21 +22,21 @@ use crate::geometry::{Aabb, Mesh};
 use small::Small;
 
 /// Everything a task of the build needs to know.
-pub(super) struct Context<'a> {
-    pub(super) mesh: &'a Mesh,
-    pub(super) limits: &'a Limits,
-    pub(super) meter: &'a Meter<'a>,
+struct Context<'a> {
+    mesh: &'a Mesh,
+    limits: &'a Limits,
+    meter: &'a Meter<'a>,
     /// Memory of small subtrees that are finished, for the next.
-    pub(super) idle: Mutex<Vec<Small>>,
+    idle: Mutex<Vec<Small>>,
 }
 
 /// A node before its children are known.
 #[derive(Clone, Copy)]
-pub(super) struct Node {
-    pub(super) bounds: Aabb,
-    pub(super) depth: u32,
+struct Node {
+    bounds: Aabb,
+    depth: u32,
     /// Its part of the whole build, for the progress report.
-    pub(super) share: f64,
+    share: f64,
 }
 
 impl Node {
@@ -69,18 +69,31 @@ impl Context<'_> {
         a: impl FnOnce() -> A + Send,
         b: impl FnOnce() -> B + Send,
     ) -> (A, B) {
-        if self.limits.threads > 1 { rayon::join(a, b) } else { (a(), b()) }
+        if self.limits.threads > 1 {
+            rayon::join(a, b)
+        } else {
+            (a(), b())
+        }
     }
 }
 
 /// The exact tree.
 pub(super) fn build(mesh: &Mesh, limits: &Limits, meter: &Meter) -> Result<Growth, BuildError> {
-    let context = Context { mesh, limits, meter, idle: Mutex::default() };
+    let context = Context {
+        mesh,
+        limits,
+        meter,
+        idle: Mutex::default(),
+    };
     if limits.threads == 1 {
         return large::build(&context);
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(limits.threads).build().map_err(
-        |error| BuildError::Threads { threads: limits.threads, reason: error.to_string() },
-    )?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(limits.threads)
+        .build()
+        .map_err(|error| BuildError::Threads {
+            threads: limits.threads,
+            reason: error.to_string(),
+        })?;
     pool.install(|| large::build(&context))
 }

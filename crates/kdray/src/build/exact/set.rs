@@ -64,12 +64,18 @@ impl OwnedSet {
 
     pub(super) fn as_set(&self) -> Set<'_> {
         let [x, y, z] = &self.events;
-        Set { triangles: &self.triangles, events: [x, y, z] }
+        Set {
+            triangles: &self.triangles,
+            events: [x, y, z],
+        }
     }
 
     /// All triangles of `mesh`, with their events along `axis` sorted by `sorted_events`.
     pub(super) fn root(mesh: &Mesh, events: [Vec<Event>; 3]) -> Self {
-        Self { triangles: (0..mesh.triangles().len() as u32).collect(), events }
+        Self {
+            triangles: (0..mesh.triangles().len() as u32).collect(),
+            events,
+        }
     }
 }
 
@@ -93,8 +99,17 @@ impl<'a> Room<'a> {
         let (x, rest) = scratch.events.split_at_mut(2 * count + 1);
         let (y, rest) = rest.split_at_mut(2 * count + 1);
         let (z, free_events) = rest.split_at_mut(2 * count + 1);
-        let free = Scratch { triangles: free_triangles, events: free_events };
-        (Self { triangles, events: [x, y, z] }, free)
+        let free = Scratch {
+            triangles: free_triangles,
+            events: free_events,
+        };
+        (
+            Self {
+                triangles,
+                events: [x, y, z],
+            },
+            free,
+        )
     }
 
     /// What was filled.
@@ -116,7 +131,10 @@ pub(super) struct Scratch<'a> {
 impl Scratch<'_> {
     /// The same memory for a shorter time.
     pub(super) fn reborrow(&mut self) -> Scratch<'_> {
-        Scratch { triangles: self.triangles, events: self.events }
+        Scratch {
+            triangles: self.triangles,
+            events: self.events,
+        }
     }
 
     /// Whether two children with `counts` references find room.

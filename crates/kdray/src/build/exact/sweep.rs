@@ -66,17 +66,21 @@ fn sweep_avx2(set: &Set, bounds: &Aabb, cost: &NodeCost, axis: usize) -> Option<
 
 #[inline(always)]
 fn sweep_lanes(set: &Set, bounds: &Aabb, cost: &NodeCost, axis: usize) -> Option<Candidate> {
-    let events = set.events[axis];
+    let mut events = set.events[axis];
     let mut pricing = Pricing::new(bounds, cost, axis);
     let mut block = Block::new(bounds.lower[axis]);
-    let mut counter = Counter { count: set.triangles.len() as i32, starts: 0, passed: 0 };
+    let mut counter = Counter::new(set.triangles.len());
     if events.len() == 2 * set.triangles.len() {
         for chunk in events.chunks(BLOCK) {
             counter.fill(chunk, &mut block);
             pricing.price(&mut block);
         }
     } else {
-        counter.fill_with_planars(events, &mut block, |block| pricing.price(block));
+        while !events.is_empty() {
+            events = counter.fill_with_planars(events, &mut block);
+            pricing.price(&mut block);
+        }
+        counter.finish(&mut block);
         pricing.price(&mut block);
     }
     pricing.best()
@@ -96,7 +100,13 @@ impl Block {
     #[inline(always)]
     fn new(outside: f32) -> Self {
         let outside = super::event::ordered(outside);
-        Self { ordered: [outside; BLOCK], left: [0; BLOCK], right: [0; BLOCK], len: 0, outside }
+        Self {
+            ordered: [outside; BLOCK],
+            left: [0; BLOCK],
+            right: [0; BLOCK],
+            len: 0,
+            outside,
+        }
     }
 
     #[inline(always)]
@@ -110,69 +120,74 @@ impl Block {
 
 /// The counts at the events passed so far.
 struct Counter {
-    count: i32,
-    starts: i32,
-    /// Ends and starts together.
-    passed: i32,
+    left: i32,
+    right: i32,
+    /// The plane of the planars just passed: after the last of them they are all left.
+    flat: Option<u32>,
 }
 
 impl Counter {
+    #[inline(always)]
+    fn new(count: usize) -> Self {
+        Self {
+            left: 0,
+            right: count as i32,
+            flat: None,
+        }
+    }
+
     /// Counts for a chunk without planars.
     #[inline(always)]
     fn fill(&mut self, chunk: &[Event], block: &mut Block) {
-        let mut starts = self.starts;
+        let (mut left, right) = (self.left, self.right);
+        let before = self.left;
         for (k, event) in chunk.iter().enumerate() {
             let is_start = event.is_start() as i32;
             block.ordered[k] = event.ordered_position();
-            block.left[k] = starts;
-            block.right[k] = self.count - (self.passed + k as i32 - starts) - (1 - is_start);
-            starts += is_start;
+            block.left[k] = left;
+            block.right[k] = right - (k as i32 - (left - before)) - (1 - is_start);
+            left += is_start;
         }
         block.len = chunk.len();
-        self.starts = starts;
-        self.passed += chunk.len() as i32;
+        self.left = left;
+        self.right = right - (chunk.len() as i32 - (left - before));
     }
 
-    /// Counts for a whole list with planars. A group of flat references at one position gives two
-    /// planes: one with all of them on the right, one with all of them on the left.
+    /// Counts for the first of `events`, as many as the block holds; gives the others. A group of
+    /// flat references at one position gives two planes: one with all of them on the right, one
+    /// with all of them on the left.
     #[inline(always)]
-    fn fill_with_planars(
-        &mut self,
-        events: &[Event],
-        block: &mut Block,
-        mut full: impl FnMut(&mut Block),
-    ) {
-        let (mut left, mut right) = (0, self.count);
-        let mut flat_before = None;
-        for event in events {
+    fn fill_with_planars<'a>(&mut self, events: &'a [Event], block: &mut Block) -> &'a [Event] {
+        for (index, event) in events.iter().enumerate() {
             if block.len + 2 > BLOCK {
-                full(block);
+                return &events[index..];
             }
             let ordered = event.ordered_position();
-            // The planars of one plane are neighbours; after the last of them they are all left.
-            if flat_before.is_some_and(|before| before != ordered || !event.is(Kind::Planar)) {
-                block.push(flat_before.unwrap_or(ordered), left, right);
-                flat_before = None;
+            let is_planar = event.is(Kind::Planar);
+            if self.flat.is_some_and(|flat| flat != ordered || !is_planar) {
+                self.finish(block);
             }
-            if event.is(Kind::Planar) {
-                if flat_before.is_none() {
-                    block.push(ordered, left, right);
+            if is_planar {
+                if self.flat.is_none() {
+                    block.push(ordered, self.left, self.right);
                 }
-                flat_before = Some(ordered);
-                left += 1;
-                right -= 1;
+                self.flat = Some(ordered);
+                (self.left, self.right) = (self.left + 1, self.right - 1);
             } else {
                 let is_start = event.is_start() as i32;
-                right -= 1 - is_start;
-                block.push(ordered, left, right);
-                left += is_start;
+                self.right -= 1 - is_start;
+                block.push(ordered, self.left, self.right);
+                self.left += is_start;
             }
         }
-        if let Some(ordered) = flat_before {
-            if block.len == BLOCK {
-                full(block);
-            }
-            block.push(ordered, left, right);
+        &[]
+    }
+
+    /// Ends a group of planars.
+    #[inline(always)]
+    fn finish(&mut self, block: &mut Block) {
+        if let Some(flat) = self.flat.take() {
+            block.push(flat, self.left, self.right);
         }
     }
 }
@@ -192,7 +207,14 @@ impl<'a> Pricing<'a> {
     fn new(bounds: &Aabb, cost: &'a NodeCost, axis: usize) -> Self {
         let (lower, upper) = (bounds.lower[axis], bounds.upper[axis]);
         let (best_price, best_ordered) = ([NO_PRICE; LANES], [u32::MAX; LANES]);
-        Self { cost, axis, lower, upper, best_price, best_ordered }
+        Self {
+            cost,
+            axis,
+            lower,
+            upper,
+            best_price,
+            best_ordered,
+        }
     }
 
     /// Prices the planes of `block` and empties it.
@@ -200,21 +222,51 @@ impl<'a> Pricing<'a> {
     fn price(&mut self, block: &mut Block) {
         let padded = block.len.next_multiple_of(LANES);
         block.ordered[block.len..padded].fill(block.outside);
-        for start in (0..padded).step_by(LANES) {
+        let (mut best_price, mut best_ordered) = (self.best_price, self.best_ordered);
+        let groups = block.ordered[..padded]
+            .as_chunks::<LANES>()
+            .0
+            .iter()
+            .zip(block.left.as_chunks().0)
+            .zip(block.right.as_chunks().0);
+        for ((ordered, left), right) in groups {
+            let prices = self.price_lanes(ordered, left, right);
             for lane in 0..LANES {
-                let ordered = block.ordered[start + lane];
-                let position = position_of(ordered);
-                let distances = [position - self.lower, self.upper - position];
-                let counts = [block.left[start + lane], block.right[start + lane]];
-                let price = self.cost.split(self.axis, distances, counts).to_bits();
-                let inside = (position > self.lower) & (position < self.upper);
-                let price = if inside { price } else { NO_PRICE };
-                let better = price < self.best_price[lane];
-                self.best_price[lane] = if better { price } else { self.best_price[lane] };
-                self.best_ordered[lane] = if better { ordered } else { self.best_ordered[lane] };
+                let better = prices[lane] < best_price[lane];
+                best_price[lane] = if better {
+                    prices[lane]
+                } else {
+                    best_price[lane]
+                };
+                best_ordered[lane] = if better {
+                    ordered[lane]
+                } else {
+                    best_ordered[lane]
+                };
             }
         }
+        (self.best_price, self.best_ordered) = (best_price, best_ordered);
         block.len = 0;
+    }
+
+    #[inline(always)]
+    fn price_lanes(
+        &self,
+        ordered: &[u32; LANES],
+        left: &[i32; LANES],
+        right: &[i32; LANES],
+    ) -> [u32; LANES] {
+        let mut prices = [0; LANES];
+        for lane in 0..LANES {
+            let position = position_of(ordered[lane]);
+            let distances = [position - self.lower, self.upper - position];
+            let price = self
+                .cost
+                .split(self.axis, distances, [left[lane], right[lane]]);
+            let inside = (position > self.lower) & (position < self.upper);
+            prices[lane] = if inside { price.to_bits() } else { NO_PRICE };
+        }
+        prices
     }
 
     /// The cheapest of all lanes; of equals the one with the lowest position.
@@ -224,6 +276,10 @@ impl<'a> Pricing<'a> {
             .min()
             .filter(|(price, _)| *price < NO_PRICE)?;
         let position = position_of(ordered);
-        Some(Candidate { price: f32::from_bits(price), axis: self.axis, position })
+        Some(Candidate {
+            price: f32::from_bits(price),
+            axis: self.axis,
+            position,
+        })
     }
 }
