@@ -25,11 +25,7 @@ pub struct Cost {
 impl Default for Cost {
     /// The prices that traced fastest for their memory; `bench/` has the measurement.
     fn default() -> Self {
-        Self {
-            traversal: 2.0,
-            intersect: 1.0,
-            empty_bonus: 0.2,
-        }
+        Self { traversal: 2.0, intersect: 1.0, empty_bonus: 0.2 }
     }
 }
 
@@ -99,25 +95,12 @@ mod tests {
 
     #[test]
     fn a_unit_cube_cut_in_half() {
-        let cost = Cost {
-            traversal: 1.0,
-            intersect: 2.0,
-            empty_bonus: 0.5,
-        };
-        let cube = Aabb {
-            lower: [0.0; 3],
-            upper: [1.0; 3],
-        };
+        let cost = Cost { traversal: 1.0, intersect: 2.0, empty_bonus: 0.5 };
+        let cube = Aabb { lower: [0.0; 3], upper: [1.0; 3] };
         let node = NodeCost::new(&cost, &cube);
         // Half areas: 3 for the cube, 2 for each half.
         assert_eq!(node.leaf(5), 2.0 * 5.0 * 3.0);
-        assert_eq!(
-            node.split(0, [0.5, 0.5], [3, 4]),
-            3.0 + 2.0 * (3.0 * 2.0 + 4.0 * 2.0)
-        );
-        assert_eq!(
-            node.split(2, [0.5, 0.5], [0, 4]),
-            0.5 * (3.0 + 2.0 * 4.0 * 2.0)
-        );
+        assert_eq!(node.split(0, [0.5, 0.5], [3, 4]), 3.0 + 2.0 * (3.0 * 2.0 + 4.0 * 2.0));
+        assert_eq!(node.split(2, [0.5, 0.5], [0, 4]), 0.5 * (3.0 + 2.0 * 4.0 * 2.0));
     }
 }

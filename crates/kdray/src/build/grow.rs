@@ -13,14 +13,8 @@ pub(crate) struct Growth {
 impl Growth {
     /// Adds a leaf. `triangles` are in ascending order.
     pub(crate) fn push_leaf(&mut self, triangles: &[u32]) {
-        debug_assert!(
-            triangles.is_sorted(),
-            "leaf references are sorted by triangle"
-        );
-        self.nodes.push(Node::leaf(
-            self.references.len() as u32,
-            triangles.len() as u32,
-        ));
+        debug_assert!(triangles.is_sorted(), "leaf references are sorted by triangle");
+        self.nodes.push(Node::leaf(self.references.len() as u32, triangles.len() as u32));
         self.references.extend_from_slice(triangles);
     }
 
@@ -39,12 +33,7 @@ impl Growth {
     /// Adds a whole subtree.
     pub(crate) fn append(&mut self, subtree: &Self) {
         let (nodes, references) = (self.nodes.len() as u32, self.references.len() as u32);
-        self.nodes.extend(
-            subtree
-                .nodes
-                .iter()
-                .map(|node| node.moved(nodes, references)),
-        );
+        self.nodes.extend(subtree.nodes.iter().map(|node| node.moved(nodes, references)));
         self.references.extend_from_slice(&subtree.references);
     }
 
@@ -55,11 +44,7 @@ impl Growth {
         if self.nodes.len() > limit {
             return refuse("nodes");
         }
-        if self.references.len() > limit {
-            refuse("references")
-        } else {
-            Ok(())
-        }
+        if self.references.len() > limit { refuse("references") } else { Ok(()) }
     }
 
     /// Bytes that the vectors hold, used or not.

@@ -28,10 +28,7 @@ impl<'a> Meter<'a> {
             options,
             current: AtomicU64::new(0),
             peak: AtomicU64::new(0),
-            done: Mutex::new(Done {
-                fraction: 0.0,
-                reported: 0.0,
-            }),
+            done: Mutex::new(Done { fraction: 0.0, reported: 0.0 }),
         }
     }
 
@@ -40,11 +37,9 @@ impl<'a> Meter<'a> {
         let needed = self.current.fetch_add(bytes as u64, Ordering::Relaxed) + bytes as u64;
         self.peak.fetch_max(needed, Ordering::Relaxed);
         match self.options.memory_budget {
-            Some(budget) if needed > budget => Err(BuildError::MemoryBudget {
-                stage,
-                needed,
-                budget,
-            }),
+            Some(budget) if needed > budget => {
+                Err(BuildError::MemoryBudget { stage, needed, budget })
+            }
             _ => Ok(()),
         }
     }
@@ -71,10 +66,7 @@ impl<'a> Meter<'a> {
         let Some(report) = self.options.progress else {
             return;
         };
-        let mut done = self
-            .done
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut done = self.done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         done.fraction = (done.fraction + fraction).min(1.0);
         if done.fraction - done.reported >= REPORT_STEP {
             done.reported = done.fraction;

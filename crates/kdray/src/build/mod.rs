@@ -42,8 +42,6 @@ pub(crate) fn build(
         Builder::Exact => exact::build(mesh, &limits, &meter),
     }?;
     meter.finish();
-    let report = BuildReport {
-        peak_bytes: meter.peak_bytes(),
-    };
+    let report = BuildReport { peak_bytes: meter.peak_bytes() };
     Ok((Tree::from_growth(mesh, growth, options.cost), report))
 }

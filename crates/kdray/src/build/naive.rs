@@ -30,13 +30,7 @@ pub(super) fn build_with(
 ) -> Result<Growth, BuildError> {
     let references = root_references(mesh);
     meter.charge("root", size_of_val(&references[..]))?;
-    let mut context = Context {
-        mesh,
-        limits,
-        meter,
-        find_plane,
-        growth: Growth::default(),
-    };
+    let mut context = Context { mesh, limits, meter, find_plane, growth: Growth::default() };
     context.node(references, mesh.bounds(), 0, 1.0)?;
     context.growth.check_size()?;
     Ok(context.growth)
@@ -44,10 +38,7 @@ pub(super) fn build_with(
 
 fn root_references(mesh: &Mesh) -> Vec<Reference> {
     let bounds = |triangle| Aabb::of_points(&mesh.triangle(triangle));
-    let reference = |index| Reference {
-        triangle: index as u32,
-        bounds: bounds(index),
-    };
+    let reference = |index| Reference { triangle: index as u32, bounds: bounds(index) };
     (0..mesh.triangles().len()).map(reference).collect()
 }
 
@@ -71,11 +62,7 @@ impl Context<'_> {
         self.meter.check_cancelled()?;
         let may_split = depth < self.limits.max_depth && references.len() > self.limits.max_leaf;
         let cost = NodeCost::new(&self.limits.cost, &bounds);
-        let plane = if may_split {
-            (self.find_plane)(&references, &bounds, &cost)
-        } else {
-            None
-        };
+        let plane = if may_split { (self.find_plane)(&references, &bounds, &cost) } else { None };
         let Some(plane) = plane else {
             let triangles: Vec<u32> = references.iter().map(|r| r.triangle).collect();
             self.growth.push_leaf(&triangles);
@@ -86,8 +73,7 @@ impl Context<'_> {
         let [left_bounds, right_bounds] = bounds.cut(plane.axis, plane.position);
         let left = self.children(&references, &plane, Side::Left, &left_bounds);
         let right = self.children(&references, &plane, Side::Right, &right_bounds);
-        self.meter
-            .charge("split", size_of_val(&left[..]) + size_of_val(&right[..]))?;
+        self.meter.charge("split", size_of_val(&left[..]) + size_of_val(&right[..]))?;
         self.meter.release(size_of_val(&references[..]));
         drop(references);
         let place = self.growth.push_inner(plane.axis, plane.position);
@@ -108,10 +94,7 @@ impl Context<'_> {
             Side::Both => {
                 let corners = self.mesh.triangle(reference.triangle as usize);
                 let part = self.limits.part(&corners, bounds)?;
-                Some(Reference {
-                    bounds: part,
-                    ..*reference
-                })
+                Some(Reference { bounds: part, ..*reference })
             }
             reached => (reached == side).then_some(*reference),
         };
@@ -133,11 +116,7 @@ fn cheapest_plane(references: &[Reference], bounds: &Aabb, cost: &NodeCost) -> O
             let (price, flat) = price_of(references, bounds, cost, axis, position);
             if price < best_price {
                 best_price = price;
-                best = Some(Plane {
-                    axis,
-                    position,
-                    flat,
-                });
+                best = Some(Plane { axis, position, flat });
             }
         }
     }
@@ -163,9 +142,5 @@ fn price_of(
     let distances = [position - bounds.lower[axis], bounds.upper[axis] - position];
     let price_left = cost.split(axis, distances, [left + flat, right]);
     let price_right = cost.split(axis, distances, [left, right + flat]);
-    if price_left <= price_right {
-        (price_left, Side::Left)
-    } else {
-        (price_right, Side::Right)
-    }
+    if price_left <= price_right { (price_left, Side::Left) } else { (price_right, Side::Right) }
 }

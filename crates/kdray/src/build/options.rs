@@ -71,28 +71,15 @@ impl Default for BuildOptions<'_> {
 impl BuildOptions<'_> {
     /// Refuses options that have no meaning.
     pub(super) fn check(&self) -> Result<(), BuildError> {
-        let refuse = |option, value: String, expected| {
-            Err(BuildError::Option {
-                option,
-                value,
-                expected,
-            })
-        };
+        let refuse =
+            |option, value: String, expected| Err(BuildError::Option { option, value, expected });
         // Beyond these, products with counts and areas would leave the range of f32.
         let positive = |value: f32| (1e-6..=1e6).contains(&value);
         if !positive(self.cost.traversal) {
-            return refuse(
-                "traversal",
-                self.cost.traversal.to_string(),
-                "between 1e-6 and 1e6",
-            );
+            return refuse("traversal", self.cost.traversal.to_string(), "between 1e-6 and 1e6");
         }
         if !positive(self.cost.intersect) {
-            return refuse(
-                "intersect",
-                self.cost.intersect.to_string(),
-                "between 1e-6 and 1e6",
-            );
+            return refuse("intersect", self.cost.intersect.to_string(), "between 1e-6 and 1e6");
         }
         if !(0.0..1.0).contains(&self.cost.empty_bonus) {
             return refuse("empty_bonus", self.cost.empty_bonus.to_string(), "in 0..1");
@@ -131,11 +118,7 @@ impl Limits {
             cost: options.cost,
             max_depth: options.max_depth.unwrap_or(default_depth),
             max_leaf: options.max_leaf as usize,
-            threads: if options.threads == 0 {
-                cores()
-            } else {
-                options.threads
-            },
+            threads: if options.threads == 0 { cores() } else { options.threads },
             clip: options.clip,
         }
     }
@@ -143,11 +126,7 @@ impl Limits {
     /// Bounds of a straddler's part in a child, or `None` if it has none.
     pub(super) fn part(&self, triangle: &[[f32; 3]; 3], bounds: &Aabb) -> Option<Aabb> {
         use crate::geometry::clip::{clip, overlap};
-        if self.clip {
-            clip(triangle, bounds)
-        } else {
-            overlap(triangle, bounds)
-        }
+        if self.clip { clip(triangle, bounds) } else { overlap(triangle, bounds) }
     }
 }
 
@@ -162,39 +141,15 @@ mod tests {
 
     #[test]
     fn the_default_depth_is_that_of_the_literature() {
-        assert_eq!(
-            [0, 1, 2, 69_451, 871_414].map(default_depth),
-            [8, 8, 9, 29, 34]
-        );
+        assert_eq!([0, 1, 2, 69_451, 871_414].map(default_depth), [8, 8, 9, 29, 34]);
     }
 
     #[test]
     fn costs_without_meaning_are_refused() {
-        let cost = Cost {
-            empty_bonus: 1.0,
-            ..Cost::default()
-        };
-        let error = BuildOptions {
-            cost,
-            ..BuildOptions::default()
-        }
-        .check()
-        .unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "option empty_bonus is 1, which is not in 0..1"
-        );
-        let cost = Cost {
-            traversal: f32::NAN,
-            ..Cost::default()
-        };
-        assert!(
-            BuildOptions {
-                cost,
-                ..BuildOptions::default()
-            }
-            .check()
-            .is_err()
-        );
+        let cost = Cost { empty_bonus: 1.0, ..Cost::default() };
+        let error = BuildOptions { cost, ..BuildOptions::default() }.check().unwrap_err();
+        assert_eq!(error.to_string(), "option empty_bonus is 1, which is not in 0..1");
+        let cost = Cost { traversal: f32::NAN, ..Cost::default() };
+        assert!(BuildOptions { cost, ..BuildOptions::default() }.check().is_err());
     }
 }

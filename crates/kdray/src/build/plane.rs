@@ -38,16 +38,9 @@ mod tests {
 
     #[test]
     fn touching_the_plane_is_not_crossing_it() {
-        let plane = Plane {
-            axis: 0,
-            position: 1.0,
-            flat: Side::Right,
-        };
+        let plane = Plane { axis: 0, position: 1.0, flat: Side::Right };
         let side = |lower, upper| {
-            plane.side_of(&Aabb {
-                lower: [lower, 0.0, 0.0],
-                upper: [upper, 1.0, 1.0],
-            })
+            plane.side_of(&Aabb { lower: [lower, 0.0, 0.0], upper: [upper, 1.0, 1.0] })
         };
         assert_eq!([side(0.0, 1.0), side(1.0, 2.0)], [Side::Left, Side::Right]);
         assert_eq!([side(0.0, 2.0), side(1.0, 1.0)], [Side::Both, Side::Right]);

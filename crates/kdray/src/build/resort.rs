@@ -35,19 +35,13 @@ fn cheapest_plane(references: &[Reference], bounds: &Aabb, cost: &NodeCost) -> O
             right -= flat + count(Kind::End);
             if bounds.lower[axis] < position && position < bounds.upper[axis] {
                 let distances = [position - bounds.lower[axis], bounds.upper[axis] - position];
-                let options = [
-                    (Side::Left, [left + flat, right]),
-                    (Side::Right, [left, right + flat]),
-                ];
+                let options =
+                    [(Side::Left, [left + flat, right]), (Side::Right, [left, right + flat])];
                 for (flat, counts) in options {
                     let price = cost.split(axis, distances, counts);
                     if price < best_price {
                         best_price = price;
-                        best = Some(Plane {
-                            axis,
-                            position,
-                            flat,
-                        });
+                        best = Some(Plane { axis, position, flat });
                     }
                 }
             }

@@ -12,17 +12,12 @@ pub struct Aabb {
 
 impl Aabb {
     /// The box of no points: `union` with anything gives that thing.
-    pub const EMPTY: Self = Self {
-        lower: [f32::INFINITY; 3],
-        upper: [f32::NEG_INFINITY; 3],
-    };
+    pub const EMPTY: Self = Self { lower: [f32::INFINITY; 3], upper: [f32::NEG_INFINITY; 3] };
 
     /// The smallest box that holds all `points`.
     #[must_use]
     pub fn of_points(points: &[[f32; 3]]) -> Self {
-        points
-            .iter()
-            .fold(Self::EMPTY, |bounds, point| bounds.union_point(*point))
+        points.iter().fold(Self::EMPTY, |bounds, point| bounds.union_point(*point))
     }
 
     /// The smallest box that holds this one and `point`.
@@ -85,10 +80,7 @@ mod tests {
 
     #[test]
     fn half_the_area_of_a_unit_cube_is_three() {
-        let cube = Aabb {
-            lower: [0.0; 3],
-            upper: [1.0; 3],
-        };
+        let cube = Aabb { lower: [0.0; 3], upper: [1.0; 3] };
         assert_eq!(cube.half_area(), 3.0);
         let [left, right] = cube.cut(1, 0.25);
         assert_eq!(left.half_area() + right.half_area(), 4.0);
@@ -98,12 +90,6 @@ mod tests {
     fn the_empty_box_is_neutral_under_union() {
         let point = [1.0, -2.0, 3.0];
         assert!(Aabb::EMPTY.is_empty());
-        assert_eq!(
-            Aabb::EMPTY.union_point(point),
-            Aabb {
-                lower: point,
-                upper: point
-            }
-        );
+        assert_eq!(Aabb::EMPTY.union_point(point), Aabb { lower: point, upper: point });
     }
 }

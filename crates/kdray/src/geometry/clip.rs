@@ -28,14 +28,10 @@ pub(crate) fn clip(triangle: &[[f32; 3]; 3], bounds: &Aabb) -> Option<Aabb> {
     let mut polygon = Polygon::new(triangle);
     for axis in 0..3 {
         if whole.lower[axis] < bounds.lower[axis] {
-            polygon.cut(axis, bounds.lower[axis] - margin, |value, plane| {
-                value >= plane
-            });
+            polygon.cut(axis, bounds.lower[axis] - margin, |value, plane| value >= plane);
         }
         if whole.upper[axis] > bounds.upper[axis] {
-            polygon.cut(axis, bounds.upper[axis] + margin, |value, plane| {
-                value <= plane
-            });
+            polygon.cut(axis, bounds.upper[axis] + margin, |value, plane| value <= plane);
         }
     }
     if polygon.overflowed {
@@ -71,9 +67,7 @@ fn margin(whole: &Aabb, bounds: &Aabb) -> f32 {
     for axis in 0..3 {
         cuts += i32::from(whole.lower[axis] < bounds.lower[axis]);
         cuts += i32::from(whole.upper[axis] > bounds.upper[axis]);
-        largest = largest
-            .max(whole.lower[axis].abs())
-            .max(whole.upper[axis].abs());
+        largest = largest.max(whole.lower[axis].abs()).max(whole.upper[axis].abs());
         extent = extent.max(whole.upper[axis] - whole.lower[axis]);
     }
     // One cut more than there are pays for the roundings of the margin itself.
@@ -96,11 +90,7 @@ impl Polygon {
     }
 
     fn empty() -> Self {
-        Self {
-            corners: [[0.0; 3]; MAX_CORNERS],
-            len: 0,
-            overflowed: false,
-        }
+        Self { corners: [[0.0; 3]; MAX_CORNERS], len: 0, overflowed: false }
     }
 
     /// Keeps the side of the plane where `inside(coordinate, plane)` holds.
@@ -147,10 +137,7 @@ fn crossing(p: [f32; 3], q: [f32; 3], axis: usize, plane: f32) -> [f32; 3] {
 mod tests {
     use super::*;
 
-    const UNIT: Aabb = Aabb {
-        lower: [0.0; 3],
-        upper: [1.0; 3],
-    };
+    const UNIT: Aabb = Aabb { lower: [0.0; 3], upper: [1.0; 3] };
 
     #[test]
     fn a_triangle_inside_keeps_its_bounds() {
@@ -170,10 +157,7 @@ mod tests {
     fn the_part_is_tight() {
         let triangle = [[-1.0, 0.0, 0.5], [1.0, 0.0, 0.5], [-1.0, 1.0, 0.5]];
         let part = clip(&triangle, &UNIT).unwrap();
-        assert_eq!(
-            (part.lower, part.upper[0], part.upper[2]),
-            ([0.0, 0.0, 0.5], 1.0, 0.5)
-        );
+        assert_eq!((part.lower, part.upper[0], part.upper[2]), ([0.0, 0.0, 0.5], 1.0, 0.5));
         assert!((0.5..0.500_002).contains(&part.upper[1]), "{part:?}");
     }
 

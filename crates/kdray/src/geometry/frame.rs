@@ -23,10 +23,7 @@ const COMFORTABLE_EXPONENT: i32 = 32;
 
 impl Frame {
     /// World and local coordinates are the same.
-    pub const IDENTITY: Self = Self {
-        origin: [0.0; 3],
-        scale: 1.0,
-    };
+    pub const IDENTITY: Self = Self { origin: [0.0; 3], scale: 1.0 };
 
     /// The frame for geometry inside `lower..upper`.
     ///
@@ -46,10 +43,7 @@ impl Frame {
             let reach = |value: f64| (value - origin[axis]).abs();
             size = size.max(reach(lower[axis])).max(reach(upper[axis]));
         }
-        Self {
-            origin,
-            scale: scale_for(size),
-        }
+        Self { origin, scale: scale_for(size) }
     }
 
     /// Local coordinates of a world point, rounded to f32.
@@ -79,12 +73,7 @@ impl Frame {
     #[must_use]
     pub fn local_ray(&self, origin: [f64; 3], direction: [f64; 3], t_min: f32, t_max: f32) -> Ray {
         let direction = direction.map(|component| (component / self.scale) as f32);
-        Ray {
-            origin: self.local_point(origin),
-            direction,
-            t_min,
-            t_max,
-        }
+        Ray { origin: self.local_point(origin), direction, t_min, t_max }
     }
 }
 

@@ -72,11 +72,7 @@ impl Mesh {
     ///
     /// As [`Mesh::new`].
     pub fn from_f64(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self, MeshError> {
-        Self::from_world(
-            positions.len(),
-            |index| positions[index],
-            triangles.to_vec(),
-        )
+        Self::from_world(positions.len(), |index| positions[index], triangles.to_vec())
     }
 
     /// As [`Mesh::from_f64`], but triangles that touch a vertex that is not finite are dropped.
@@ -96,11 +92,7 @@ impl Mesh {
         let dropped = triangles.len() - kept.len();
         // A vertex that no triangle uses any more is parked at the zero of the world.
         let world = |index: usize| {
-            if finite(index) {
-                positions[index]
-            } else {
-                [0.0; 3]
-            }
+            if finite(index) { positions[index] } else { [0.0; 3] }
         };
         Ok((Self::from_world(positions.len(), world, kept)?, dropped))
     }
@@ -114,10 +106,7 @@ impl Mesh {
         check_indices(vertices, &triangles)?;
         let non_finite = |index: &usize| world(*index).iter().any(|value| !value.is_finite());
         if let Some(vertex) = (0..vertices).find(non_finite) {
-            return Err(MeshError::NonFinite {
-                vertex,
-                position: world(vertex),
-            });
+            return Err(MeshError::NonFinite { vertex, position: world(vertex) });
         }
         let (mut lower, mut upper) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for index in triangles.as_flattened() {
@@ -127,34 +116,15 @@ impl Mesh {
                 upper[axis] = upper[axis].max(position[axis]);
             }
         }
-        let frame = if triangles.is_empty() {
-            Frame::IDENTITY
-        } else {
-            Frame::around(lower, upper)
-        };
+        let frame =
+            if triangles.is_empty() { Frame::IDENTITY } else { Frame::around(lower, upper) };
         // A vertex outside every triangle may lie out of reach of the frame; nothing uses it.
-        let local = |index| {
-            frame
-                .local_point(world(index))
-                .map(|x| x.clamp(f32::MIN, f32::MAX))
-        };
+        let local = |index| frame.local_point(world(index)).map(|x| x.clamp(f32::MIN, f32::MAX));
         let positions: Vec<[f32; 3]> = (0..vertices).map(local).collect();
-        let corners = triangles
-            .as_flattened()
-            .iter()
-            .map(|index| positions[*index as usize]);
+        let corners = triangles.as_flattened().iter().map(|index| positions[*index as usize]);
         let bounds = corners.fold(Aabb::EMPTY, Aabb::union_point);
-        let bounds = if triangles.is_empty() {
-            EMPTY_SCENE
-        } else {
-            bounds
-        };
-        Ok(Self {
-            positions,
-            triangles,
-            frame,
-            bounds,
-        })
+        let bounds = if triangles.is_empty() { EMPTY_SCENE } else { bounds };
+        Ok(Self { positions, triangles, frame, bounds })
     }
 
     /// The vertices, in the mesh's frame.
@@ -206,26 +176,16 @@ impl Mesh {
 }
 
 /// The bounds of a mesh without triangles.
-const EMPTY_SCENE: Aabb = Aabb {
-    lower: [0.0; 3],
-    upper: [0.0; 3],
-};
+const EMPTY_SCENE: Aabb = Aabb { lower: [0.0; 3], upper: [0.0; 3] };
 
 fn check_indices(vertices: usize, triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     if triangles.len() > Mesh::MAX_TRIANGLES {
         let limit = Mesh::MAX_TRIANGLES;
-        return Err(MeshError::TooLarge {
-            triangles: triangles.len(),
-            limit,
-        });
+        return Err(MeshError::TooLarge { triangles: triangles.len(), limit });
     }
     for (triangle, corners) in triangles.iter().enumerate() {
         if let Some(index) = corners.iter().find(|index| **index as usize >= vertices) {
-            return Err(MeshError::IndexOutOfRange {
-                triangle,
-                index: *index,
-                vertices,
-            });
+            return Err(MeshError::IndexOutOfRange { triangle, index: *index, vertices });
         }
     }
     Ok(())
@@ -246,10 +206,7 @@ mod tests {
         for (local, world) in mesh.positions().iter().zip(positions) {
             let back = mesh.frame().world_point(*local);
             for axis in 0..3 {
-                assert!(
-                    (back[axis] - world[axis]).abs() < 1e-6,
-                    "{back:?} {world:?}"
-                );
+                assert!((back[axis] - world[axis]).abs() < 1e-6, "{back:?} {world:?}");
             }
         }
     }
@@ -258,10 +215,7 @@ mod tests {
     fn the_first_vertex_that_is_not_finite_is_named() {
         let positions = [[0.0; 3], [1.0, f32::NAN, 0.0], [f32::INFINITY; 3]];
         let error = Mesh::new(&positions, &TRIANGLE).unwrap_err();
-        assert!(
-            error.to_string().starts_with("vertex 1 is not finite"),
-            "{error}"
-        );
+        assert!(error.to_string().starts_with("vertex 1 is not finite"), "{error}");
     }
 
     #[test]
@@ -275,14 +229,7 @@ mod tests {
     #[test]
     fn an_index_out_of_range_is_named() {
         let error = Mesh::new(&[[0.0; 3]; 3], &[[0, 1, 2], [0, 1, 7]]).unwrap_err();
-        assert_eq!(
-            error,
-            MeshError::IndexOutOfRange {
-                triangle: 1,
-                index: 7,
-                vertices: 3
-            }
-        );
+        assert_eq!(error, MeshError::IndexOutOfRange { triangle: 1, index: 7, vertices: 3 });
     }
 
     #[test]

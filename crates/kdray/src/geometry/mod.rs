@@ -4,6 +4,8 @@ mod aabb;
 pub(crate) mod clip;
 mod frame;
 mod mesh;
+pub(crate) mod nearest;
+pub(crate) mod overlap;
 mod ray;
 
 pub use aabb::Aabb;

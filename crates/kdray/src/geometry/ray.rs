@@ -22,12 +22,7 @@ impl Ray {
     /// The half-line from `origin` on: `t` from zero to infinity.
     #[must_use]
     pub const fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
-        Self {
-            origin,
-            t_min: 0.0,
-            direction,
-            t_max: f32::INFINITY,
-        }
+        Self { origin, t_min: 0.0, direction, t_max: f32::INFINITY }
     }
 
     /// The point at `t`.

@@ -30,12 +30,10 @@ impl Tracer {
 
     fn batch<T: Send>(&self, rays: &[Ray], answers: &mut [T], ask: impl Fn(&Ray) -> T + Sync) {
         assert_eq!(rays.len(), answers.len(), "one answer a ray");
-        rays.par_chunks(CHUNK)
-            .zip(answers.par_chunks_mut(CHUNK))
-            .for_each(|(rays, answers)| {
-                for (ray, answer) in rays.iter().zip(answers) {
-                    *answer = ask(ray);
-                }
-            });
+        rays.par_chunks(CHUNK).zip(answers.par_chunks_mut(CHUNK)).for_each(|(rays, answers)| {
+            for (ray, answer) in rays.iter().zip(answers) {
+                *answer = ask(ray);
+            }
+        });
     }
 }

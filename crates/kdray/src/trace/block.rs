@@ -66,10 +66,7 @@ impl Block {
         let row = |corner: usize, axis: usize| unsafe {
             _mm256_load_ps(self.corners[corner][shear.axes[axis]].as_ptr())
         };
-        let [shear_x, shear_y] = [
-            _mm256_set1_ps(shear.shear[0]),
-            _mm256_set1_ps(shear.shear[1]),
-        ];
+        let [shear_x, shear_y] = [_mm256_set1_ps(shear.shear[0]), _mm256_set1_ps(shear.shear[1])];
         let x0 = _mm256_set1_ps(shear.origin[0]);
         let y0 = _mm256_set1_ps(shear.origin[1]);
         let z0 = _mm256_set1_ps(shear.origin[2]);
@@ -97,16 +94,40 @@ impl Block {
     /// The hit of the triangle in a lane, at any `t`.
     #[inline(always)]
     pub(super) fn hit(&self, lane: usize, shear: &Shear) -> Option<Hit> {
+        let (triangle, corners) = self.triangle(lane);
+        let Crossing { t, u, v } = crossing(shear, &corners)?;
+        Some(Hit { t, triangle, u, v })
+    }
+
+    /// The triangle in a lane: its index and its corners.
+    #[inline(always)]
+    pub(super) fn triangle(&self, lane: usize) -> (u32, [[f32; 3]; 3]) {
         let corner = |corner: usize| {
             let [x, y, z] = &self.corners[corner];
             [x[lane], y[lane], z[lane]]
         };
-        let Crossing { t, u, v } = crossing(shear, &[corner(0), corner(1), corner(2)])?;
-        Some(Hit {
-            t,
-            triangle: self.triangles[lane] & !LAST,
-            u,
-            v,
-        })
+        (self.triangles[lane] & !LAST, [corner(0), corner(1), corner(2)])
+    }
+
+    /// A bit for every lane whose triangle's bounds are within the squared distance `until` of
+    /// `point`, or seem to be.
+    #[inline(always)]
+    pub(super) fn near(&self, point: [f32; 3], until: f32) -> u32 {
+        let mut squared = [0.0; LANES];
+        for axis in 0..3 {
+            for lane in 0..LANES {
+                let [a, b, c] = [0, 1, 2].map(|corner: usize| self.corners[corner][axis][lane]);
+                let below = a.min(b).min(c) - point[axis];
+                let above = point[axis] - a.max(b).max(c);
+                let outside = below.max(above).max(0.0);
+                squared[lane] += outside * outside;
+            }
+        }
+        let until = until * (1.0 + 8.0 * f32::EPSILON);
+        let mut near = 0;
+        for lane in 0..LANES {
+            near |= u32::from(squared[lane] <= until) << lane;
+        }
+        near
     }
 }

@@ -51,11 +51,7 @@ pub(super) fn crossing(shear: &Shear, corners: &[[f32; 3]; 3]) -> Option<Crossin
     }
     let determinant = u + v + w;
     let height = (u * a[2] + v * b[2]) + w * c[2];
-    Some(Crossing {
-        t: height / determinant,
-        u: v / determinant,
-        v: w / determinant,
-    })
+    Some(Crossing { t: height / determinant, u: v / determinant, v: w / determinant })
 }
 
 impl Shear {
@@ -65,11 +61,7 @@ impl Shear {
         let x = corner[self.axes[0]] - self.origin[0];
         let y = corner[self.axes[1]] - self.origin[1];
         let z = corner[self.axes[2]] - self.origin[2];
-        [
-            x - self.shear[0] * z,
-            y - self.shear[1] * z,
-            self.t_per_z * z,
-        ]
+        [x - self.shear[0] * z, y - self.shear[1] * z, self.t_per_z * z]
     }
 }
 
@@ -82,11 +74,7 @@ fn edge(p: [f32; 3], q: [f32; 3]) -> f32 {
 #[cold]
 fn tied_crossing([a, b, c]: [[f32; 3]; 3]) -> Option<Crossing> {
     let edges = [exact_edge(c, b), exact_edge(a, c), exact_edge(b, a)];
-    let sides = [
-        side(edges[0], c, b)?,
-        side(edges[1], a, c)?,
-        side(edges[2], b, a)?,
-    ];
+    let sides = [side(edges[0], c, b)?, side(edges[1], a, c)?, side(edges[2], b, a)?];
     if sides != [sides[0]; 3] {
         return None;
     }
@@ -97,11 +85,7 @@ fn tied_crossing([a, b, c]: [[f32; 3]; 3]) -> Option<Crossing> {
     }
     let height = (u * f64::from(a[2]) + v * f64::from(b[2])) + w * f64::from(c[2]);
     let share = |value: f64| (value / determinant) as f32;
-    Some(Crossing {
-        t: share(height),
-        u: share(v),
-        v: share(w),
-    })
+    Some(Crossing { t: share(height), u: share(v), v: share(w) })
 }
 
 /// An edge function whose sign is exact: its products are.
@@ -133,12 +117,7 @@ mod tests {
         let ray = Ray::new([0.25, 0.5, 2.0], [0.0, 0.0, -4.0]);
         assert_eq!(
             intersect(&ray, 3, &CORNERS),
-            Some(Hit {
-                t: 0.5,
-                triangle: 3,
-                u: 0.25,
-                v: 0.5
-            })
+            Some(Hit { t: 0.5, triangle: 3, u: 0.25, v: 0.5 })
         );
     }
 
@@ -153,15 +132,9 @@ mod tests {
 
     #[test]
     fn hits_outside_the_interval_do_not_count() {
-        let ray = Ray {
-            t_min: 0.6,
-            ..Ray::new([0.25, 0.5, 2.0], [0.0, 0.0, -4.0])
-        };
+        let ray = Ray { t_min: 0.6, ..Ray::new([0.25, 0.5, 2.0], [0.0, 0.0, -4.0]) };
         assert_eq!(intersect(&ray, 0, &CORNERS), None);
-        let ray = Ray {
-            t_max: 0.4,
-            ..Ray::new([0.25, 0.5, 2.0], [0.0, 0.0, -4.0])
-        };
+        let ray = Ray { t_max: 0.4, ..Ray::new([0.25, 0.5, 2.0], [0.0, 0.0, -4.0]) };
         assert_eq!(intersect(&ray, 0, &CORNERS), None);
     }
 
@@ -177,17 +150,12 @@ mod tests {
             [1.0, -1.0, -0.1],
         ];
         let fan: Vec<_> = (0..5).map(|i| [hub, rim[i], rim[(i + 1) % 5]]).collect();
-        let targets = rim
-            .map(|[x, y, _]| [0.5 * x, 0.5 * y])
-            .into_iter()
-            .chain([[0.0, 0.0]]);
+        let targets = rim.map(|[x, y, _]| [0.5 * x, 0.5 * y]).into_iter().chain([[0.0, 0.0]]);
         for [x, y] in targets {
             for z in [1.0, -1.0] {
                 let ray = Ray::new([x, y, 3.0 * z], [0.0, 0.0, -z]);
-                let hits = fan
-                    .iter()
-                    .filter(|corners| intersect(&ray, 0, corners).is_some())
-                    .count();
+                let hits =
+                    fan.iter().filter(|corners| intersect(&ray, 0, corners).is_some()).count();
                 assert_eq!(hits, 1, "at {x} {y} from {z}");
             }
         }
@@ -196,10 +164,7 @@ mod tests {
     #[test]
     fn rays_without_meaning_hit_nothing() {
         for direction in [[0.0; 3], [f32::NAN; 3], [f32::INFINITY, 0.0, 0.0]] {
-            assert_eq!(
-                intersect(&Ray::new([0.25, 0.5, 2.0], direction), 0, &CORNERS),
-                None
-            );
+            assert_eq!(intersect(&Ray::new([0.25, 0.5, 2.0], direction), 0, &CORNERS), None);
         }
     }
 }

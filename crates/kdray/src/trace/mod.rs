@@ -7,8 +7,12 @@
 
 mod batch;
 mod block;
+mod hits;
 mod intersect;
+mod near;
+mod only;
 mod prepare;
+mod proximity;
 mod stack;
 mod step;
 mod tracer;
@@ -16,4 +20,6 @@ mod traverse;
 mod wide;
 
 pub use intersect::intersect;
+pub use only::Only;
+pub use proximity::ClosestPoint;
 pub use tracer::{Counts, Tracer};

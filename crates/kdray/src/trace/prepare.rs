@@ -15,12 +15,7 @@ impl Prepared {
     #[inline(always)]
     pub(super) fn new(ray: &Ray, reach: f32) -> Self {
         let (shear, slabs) = (Shear::new(ray), Slabs::new(ray, reach));
-        Self {
-            shear,
-            slabs,
-            t_min: ray.t_min,
-            t_max: ray.t_max,
-        }
+        Self { shear, slabs, t_min: ray.t_min, t_max: ray.t_max }
     }
 }
 
@@ -58,17 +53,8 @@ impl Shear {
             (_, true) => [1, 0, 2],
         };
         let [x, y, z] = [direction[axes[0]], direction[axes[1]], direction[axes[2]]];
-        let origin = [
-            ray.origin[axes[0]],
-            ray.origin[axes[1]],
-            ray.origin[axes[2]],
-        ];
-        Self {
-            axes,
-            origin,
-            shear: [x / z, y / z],
-            t_per_z: 1.0 / z,
-        }
+        let origin = [ray.origin[axes[0]], ray.origin[axes[1]], ray.origin[axes[2]]];
+        Self { axes, origin, shear: [x / z, y / z], t_per_z: 1.0 / z }
     }
 }
 
@@ -100,20 +86,11 @@ impl Slabs {
         let magnitude = |v: &[f32; 3]| v[0].abs().max(v[1].abs()).max(v[2].abs());
         let smallest = SMALLEST * magnitude(&ray.direction);
         let thickness = THICKNESS * (magnitude(&ray.origin) + reach);
-        let mut slabs = Self {
-            origin: ray.origin,
-            inverse: [0.0; 3],
-            thickness: [0.0; 3],
-            backward: 0,
-        };
+        let mut slabs =
+            Self { origin: ray.origin, inverse: [0.0; 3], thickness: [0.0; 3], backward: 0 };
         for axis in 0..3 {
             let d = ray.direction[axis];
-            let inverse = 1.0
-                / if d.abs() < smallest {
-                    smallest.copysign(d)
-                } else {
-                    d
-                };
+            let inverse = 1.0 / if d.abs() < smallest { smallest.copysign(d) } else { d };
             slabs.inverse[axis] = inverse;
             slabs.thickness[axis] = thickness * inverse.abs();
             slabs.backward |= u32::from(inverse < 0.0) << axis;
@@ -136,9 +113,5 @@ impl Slabs {
 
 /// The largest coordinate of a box.
 pub(super) fn reach(bounds: &Aabb) -> f32 {
-    bounds
-        .lower
-        .iter()
-        .chain(&bounds.upper)
-        .fold(0.0, |largest, v| v.abs().max(largest))
+    bounds.lower.iter().chain(&bounds.upper).fold(0.0, |largest, v| v.abs().max(largest))
 }

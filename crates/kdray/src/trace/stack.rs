@@ -42,10 +42,7 @@ impl Stack {
     #[target_feature(enable = "avx2")]
     pub(super) fn push_lanes(&mut self, lanes: [std::arch::x86_64::__m256; 3], count: usize) {
         use std::arch::x86_64::_mm256_storeu_ps;
-        debug_assert!(
-            self.height + 8 <= CAPACITY,
-            "trees are at most MAX_DEPTH deep"
-        );
+        debug_assert!(self.height + 8 <= CAPACITY, "trees are at most MAX_DEPTH deep");
         // SAFETY: there is room for eight more entries, because a tree is at most MAX_DEPTH deep.
         unsafe {
             _mm256_storeu_ps(self.children.as_mut_ptr().add(self.height).cast(), lanes[0]);

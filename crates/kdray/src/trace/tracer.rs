@@ -1,7 +1,8 @@
-//! Queries for one ray.
+//! What a mesh and its tree know for queries.
 
+use super::only::Only;
 use super::prepare::{Prepared, reach};
-use super::traverse::{ENOUGH, Visitor, traverse};
+use super::traverse::{Visitor, traverse};
 use super::wide::Layout;
 use crate::geometry::{Aabb, Hit, Mesh, Ray};
 use crate::tree::Tree;
@@ -10,8 +11,8 @@ use crate::tree::Tree;
 ///
 /// Takes about 40 bytes a reference: triangles are copied in leaf order, eight to a block.
 pub struct Tracer {
-    layout: Layout,
-    bounds: Aabb,
+    pub(super) layout: Layout,
+    pub(super) bounds: Aabb,
     reach: f32,
 }
 
@@ -34,51 +35,76 @@ impl Tracer {
     /// If the tree is of another number of triangles.
     #[must_use]
     pub fn new(mesh: &Mesh, tree: &Tree) -> Self {
-        assert_eq!(
-            mesh.triangles().len(),
-            tree.triangle_count(),
-            "the tree is of another mesh"
-        );
+        assert_eq!(mesh.triangles().len(), tree.triangle_count(), "the tree is of another mesh");
         let bounds = tree.bounds();
-        Self {
-            layout: Layout::new(mesh, tree),
-            bounds,
-            reach: reach(&bounds),
-        }
+        Self { layout: Layout::new(mesh, tree), bounds, reach: reach(&bounds) }
+    }
+
+    /// Queries that see only the triangles for which `accept` holds: a visibility mask, or
+    /// everything but the triangle that a ray starts on.
+    ///
+    /// ```
+    /// use kdray::{BuildOptions, Mesh, Ray, Tracer, Tree};
+    ///
+    /// let stack = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0],
+    ///              [0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+    /// let mesh = Mesh::new(&stack, &[[0, 1, 2], [3, 4, 5]])?;
+    /// let tracer = Tracer::new(&mesh, &Tree::build(&mesh, &BuildOptions::default())?);
+    /// // Starts on triangle 0, which therefore does not count: no epsilon is needed.
+    /// let ray = Ray::new([0.25, 0.25, 0.0], [0.0, 0.0, 1.0]);
+    /// let hit = tracer.only(|triangle| triangle != 0).closest_hit(&ray).unwrap();
+    /// assert_eq!(hit.triangle, 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn only<F: Fn(u32) -> bool>(&self, accept: F) -> Only<'_, F> {
+        Only::new(self, accept)
+    }
+
+    fn all(&self) -> Only<'_, impl Fn(u32) -> bool + use<>> {
+        self.only(|_| true)
     }
 
     /// The first triangle along the ray; of several at one `t` the one with the lowest index.
     ///
-    /// Exactly the hit that [`intersect`](super::intersect()) gives for that triangle. Watertight: no ray
-    /// slips between triangles that share an edge. [PH04], [WBA13]
+    /// Exactly the hit that [`intersect`](super::intersect()) gives for that triangle. Watertight:
+    /// no ray slips between triangles that share an edge. [PH04], [WBA13]
     #[must_use]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        let mut closest = Closest::new(ray);
-        self.visit(ray, &mut closest);
-        closest.hit
+        self.all().closest_hit(ray)
     }
 
     /// [`Tracer::closest_hit`], and what it took.
     #[must_use]
     pub fn closest_hit_counted(&self, ray: &Ray) -> (Option<Hit>, Counts) {
-        let mut counted = Counted {
-            closest: Closest::new(ray),
-            counts: Counts::default(),
-        };
-        self.visit(ray, &mut counted);
-        (counted.closest.hit, counted.counts)
+        self.all().closest_hit_counted(ray)
     }
 
     /// Whether anything is hit.
     #[must_use]
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        let mut any = Any {
-            t_min: ray.t_min,
-            t_max: ray.t_max,
-            found: false,
-        };
-        self.visit(ray, &mut any);
-        any.found
+        self.all().any_hit(ray)
+    }
+
+    /// The first `limit` hits along the ray, in `hits`, in order of `t` and then of the triangle.
+    /// What was in `hits` before is lost; its memory is used again.
+    ///
+    /// Each crossing comes once, however many leaves its triangle is in.
+    pub fn first_hits(&self, ray: &Ray, limit: usize, hits: &mut Vec<Hit>) {
+        self.all().first_hits(ray, limit, hits);
+    }
+
+    /// All hits along the ray, as [`Tracer::first_hits`] without a limit.
+    ///
+    /// The number of hits along a line through a closed mesh is even, whatever edges and vertices
+    /// the line passes through.
+    pub fn all_hits(&self, ray: &Ray, hits: &mut Vec<Hit>) {
+        self.all().all_hits(ray, hits);
+    }
+
+    /// How many triangles the ray hits.
+    #[must_use]
+    pub fn count_hits(&self, ray: &Ray) -> usize {
+        self.all().count_hits(ray)
     }
 
     /// Bytes that the tracer holds.
@@ -88,78 +114,11 @@ impl Tracer {
     }
 
     /// Shows what lies along the ray from front to back.
-    fn visit(&self, ray: &Ray, visitor: &mut impl Visitor) {
+    #[inline]
+    pub(super) fn visit(&self, ray: &Ray, visitor: &mut impl Visitor) {
         if ray.is_valid() {
             let prepared = Prepared::new(ray, self.reach);
             traverse(&self.layout, &self.bounds, &prepared, visitor);
         }
-    }
-}
-
-/// Keeps the first hit.
-struct Closest {
-    t_min: f32,
-    t_max: f32,
-    hit: Option<Hit>,
-}
-
-impl Closest {
-    fn new(ray: &Ray) -> Self {
-        Self {
-            t_min: ray.t_min,
-            t_max: ray.t_max,
-            hit: None,
-        }
-    }
-}
-
-impl Visitor for Closest {
-    #[inline(always)]
-    fn hit(&mut self, hit: Hit) -> f32 {
-        let tie = || self.hit.is_none_or(|best| hit.triangle < best.triangle);
-        if self.t_min <= hit.t && (hit.t < self.t_max || hit.t == self.t_max && tie()) {
-            self.t_max = hit.t;
-            self.hit = Some(hit);
-        }
-        self.t_max
-    }
-}
-
-/// Counts while it looks for the first hit.
-struct Counted {
-    closest: Closest,
-    counts: Counts,
-}
-
-impl Visitor for Counted {
-    fn hit(&mut self, hit: Hit) -> f32 {
-        self.closest.hit(hit)
-    }
-
-    fn step(&mut self) {
-        self.counts.steps += 1;
-    }
-
-    fn leaf(&mut self) {
-        self.counts.leaves += 1;
-    }
-
-    fn test(&mut self) {
-        self.counts.tests += 1;
-    }
-}
-
-/// Is content with any hit.
-struct Any {
-    t_min: f32,
-    t_max: f32,
-    found: bool,
-}
-
-impl Visitor for Any {
-    #[inline(always)]
-    fn hit(&mut self, hit: Hit) -> f32 {
-        self.found = self.t_min <= hit.t && hit.t <= self.t_max;
-        if self.found { ENOUGH } else { self.t_max }
     }
 }

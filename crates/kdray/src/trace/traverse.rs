@@ -57,9 +57,7 @@ fn traverse_avx2(layout: &Layout, bounds: &Aabb, ray: &Prepared, visitor: &mut i
     let step = |wide: &Wide, interval: [f32; 2], stack: &mut Stack| {
         step::avx2::step(wide, &ray.slabs, &lanes, interval, stack);
     };
-    traverse_with(layout, bounds, ray, visitor, step, |block| {
-        block.filter_avx2(&ray.shear)
-    });
+    traverse_with(layout, bounds, ray, visitor, step, |block| block.filter_avx2(&ray.shear));
 }
 
 /// The traversal, with a way to step down and one to filter the triangles of a block.
@@ -85,11 +83,7 @@ fn traverse_with(
         }
         let Some(mut place) = child.block() else {
             visitor.step();
-            step(
-                &layout.wides[child.0 as usize],
-                [t_min, t_max.min(until)],
-                &mut stack,
-            );
+            step(&layout.wides[child.0 as usize], [t_min, t_max.min(until)], &mut stack);
             continue;
         };
         visitor.leaf();

@@ -6,6 +6,7 @@
 
 use super::block::{Block, LANES};
 use crate::geometry::Mesh;
+use crate::memory::with_huge_pages;
 use crate::tree::{Kind, Node, Tree};
 
 /// Three levels of the tree.
@@ -46,10 +47,7 @@ impl Child {
 }
 
 impl Wide {
-    const NO_PLANES: Self = Self {
-        planes: [f32::INFINITY; 8],
-        children: [Child::EMPTY; 8],
-    };
+    const NO_PLANES: Self = Self { planes: [f32::INFINITY; 8], children: [Child::EMPTY; 8] };
 
     /// The axes of all lanes, two bits each from the lowest on.
     #[inline(always)]
@@ -75,10 +73,7 @@ impl Layout {
             mesh,
             nodes: tree.nodes(),
             references: tree.references(),
-            layout: Self {
-                wides: Vec::new(),
-                blocks: Vec::new(),
-            },
+            layout: Self { wides: Vec::new(), blocks: with_huge_pages(block_count(tree)) },
         };
         match tree.nodes()[0].kind() {
             Kind::Inner { .. } => {
@@ -86,8 +81,20 @@ impl Layout {
             }
             Kind::Leaf { .. } => collapse.leaf_alone(),
         }
-        collapse.layout
+        let Self { wides, blocks } = collapse.layout;
+        let mut compact = with_huge_pages(wides.len());
+        compact.extend_from_slice(&wides);
+        Self { wides: compact, blocks }
     }
+}
+
+/// How many blocks the leaves of a tree fill.
+fn block_count(tree: &Tree) -> usize {
+    let blocks = |node: &Node| match node.kind() {
+        Kind::Leaf { count, .. } => count.div_ceil(LANES),
+        Kind::Inner { .. } => 0,
+    };
+    tree.nodes().iter().map(blocks).sum()
 }
 
 struct Collapse<'a> {
@@ -101,10 +108,7 @@ impl Collapse<'_> {
     /// A tree that is one leaf gets a node above it.
     fn leaf_alone(&mut self) {
         self.layout.wides.push(Wide::NO_PLANES);
-        let mut wide = Wide {
-            planes: [f32::INFINITY; 8],
-            ..Wide::NO_PLANES
-        };
+        let mut wide = Wide { planes: [f32::INFINITY; 8], ..Wide::NO_PLANES };
         wide.planes[7] = 0.0;
         wide.children[0] = self.child(0);
         self.layout.wides[0] = wide;
@@ -115,11 +119,7 @@ impl Collapse<'_> {
         match self.nodes[node].kind() {
             Kind::Leaf { count: 0, .. } => Child::EMPTY,
             Kind::Leaf { first, count } => self.leaf(&self.references[first..first + count]),
-            Kind::Inner {
-                axis,
-                position,
-                right,
-            } => {
+            Kind::Inner { axis, position, right } => {
                 let index = self.layout.wides.len();
                 self.layout.wides.push(Wide::NO_PLANES);
                 let mut wide = Wide::NO_PLANES;
@@ -135,12 +135,7 @@ impl Collapse<'_> {
     }
 
     fn second_level(&mut self, wide: &mut Wide, half: usize, node: usize) {
-        let Kind::Inner {
-            axis,
-            position,
-            right,
-        } = self.nodes[node].kind()
-        else {
+        let Kind::Inner { axis, position, right } = self.nodes[node].kind() else {
             wide.children[4 * half] = self.child(node);
             return;
         };
@@ -152,12 +147,7 @@ impl Collapse<'_> {
 
     fn third_level(&mut self, wide: &mut Wide, start: usize, quarter: usize, node: usize) {
         let place = start + 2 * quarter;
-        let Kind::Inner {
-            axis,
-            position,
-            right,
-        } = self.nodes[node].kind()
-        else {
+        let Kind::Inner { axis, position, right } = self.nodes[node].kind() else {
             wide.children[place] = self.child(node);
             return;
         };
@@ -172,9 +162,7 @@ impl Collapse<'_> {
         let last = chunks.len() - 1;
         for (index, chunk) in chunks.enumerate() {
             let corners = |triangle: u32| self.mesh.triangle(triangle as usize);
-            self.layout
-                .blocks
-                .push(Block::new(chunk, index == last, corners));
+            self.layout.blocks.push(Block::new(chunk, index == last, corners));
         }
         Child(first as u32 | Child::LEAF)
     }

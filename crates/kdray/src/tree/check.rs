@@ -33,18 +33,9 @@ pub(super) fn walk(
     triangles: usize,
     mut visit: impl FnMut(usize, &Aabb, u32),
 ) -> Result<(), Fault> {
-    let mut pending = vec![Pending {
-        index: 0,
-        bounds: root,
-        depth: 0,
-    }];
+    let mut pending = vec![Pending { index: 0, bounds: root, depth: 0 }];
     let (mut next, mut used) = (0, 0);
-    while let Some(Pending {
-        index,
-        bounds,
-        depth,
-    }) = pending.pop()
-    {
+    while let Some(Pending { index, bounds, depth }) = pending.pop() {
         let fault = |fault| Err(Fault { node: index, fault });
         if index != next {
             return fault("is not where depth-first order puts it");
@@ -55,11 +46,7 @@ pub(super) fn walk(
         };
         visit(index, &bounds, depth);
         match node.kind() {
-            Kind::Inner {
-                axis,
-                position,
-                right,
-            } => {
+            Kind::Inner { axis, position, right } => {
                 if !(bounds.lower[axis] < position && position < bounds.upper[axis]) {
                     return fault("has its plane outside its box");
                 }
@@ -67,18 +54,12 @@ pub(super) fn walk(
                     return fault("is deeper than any tree may be");
                 }
                 let [left_bounds, right_bounds] = bounds.cut(axis, position);
-                let child = |index, bounds| Pending {
-                    index,
-                    bounds,
-                    depth: depth + 1,
-                };
+                let child = |index, bounds| Pending { index, bounds, depth: depth + 1 };
                 pending.push(child(right, right_bounds));
                 pending.push(child(index + 1, left_bounds));
             }
             Kind::Leaf { first, count } => {
-                let leaf = first
-                    .checked_add(count)
-                    .and_then(|end| references.get(first..end));
+                let leaf = first.checked_add(count).and_then(|end| references.get(first..end));
                 let Some(leaf) = leaf else {
                     return fault("has references beyond the last");
                 };
@@ -96,10 +77,7 @@ pub(super) fn walk(
         }
     }
     if next != nodes.len() {
-        return Err(Fault {
-            node: next,
-            fault: "belongs to no tree",
-        });
+        return Err(Fault { node: next, fault: "belongs to no tree" });
     }
     if used != references.len() {
         return Err(Fault {

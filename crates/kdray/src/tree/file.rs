@@ -99,9 +99,7 @@ impl Tree {
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(HEADER + self.size_bytes());
         bytes.extend_from_slice(&self.header_bytes());
-        for word in bytemuck::cast_slice::<Node, u32>(self.nodes())
-            .iter()
-            .chain(self.references())
+        for word in bytemuck::cast_slice::<Node, u32>(self.nodes()).iter().chain(self.references())
         {
             bytes.extend_from_slice(&word.to_le_bytes());
         }
@@ -111,13 +109,7 @@ impl Tree {
     }
 
     fn header_bytes(&self) -> [u8; HEADER] {
-        let Header {
-            bounds,
-            frame,
-            cost,
-            triangles,
-            mesh,
-        } = self.header;
+        let Header { bounds, frame, cost, triangles, mesh } = self.header;
         let mut header = [0; HEADER];
         let mut put = |offset: usize, value: &[u8]| {
             header[offset..offset + value.len()].copy_from_slice(value);
@@ -133,9 +125,7 @@ impl Tree {
         for (index, value) in frame.origin.iter().chain([&frame.scale]).enumerate() {
             put(56 + 8 * index, &value.to_le_bytes());
         }
-        for (index, value) in [cost.traversal, cost.intersect, cost.empty_bonus]
-            .iter()
-            .enumerate()
+        for (index, value) in [cost.traversal, cost.intersect, cost.empty_bonus].iter().enumerate()
         {
             put(88 + 4 * index, &value.to_le_bytes());
         }
@@ -154,17 +144,8 @@ impl Tree {
         let (nodes, references) = body(bytes).split_at(counts.nodes * size_of::<Node>());
         let nodes: Vec<Node> = bytemuck::allocation::pod_collect_to_vec(nodes);
         let references: Vec<u32> = bytemuck::allocation::pod_collect_to_vec(references);
-        check::walk(
-            &nodes,
-            &references,
-            header.bounds,
-            header.triangles as usize,
-            |_, _, _| (),
-        )?;
-        Ok(Self {
-            header,
-            storage: Storage::Owned { nodes, references },
-        })
+        check::walk(&nodes, &references, header.bounds, header.triangles as usize, |_, _, _| ())?;
+        Ok(Self { header, storage: Storage::Owned { nodes, references } })
     }
 
     /// The tree of a file's bytes, used where they are: hand it a memory map.
@@ -188,13 +169,7 @@ impl Tree {
         };
         let tree = Self { header, storage };
         let triangles = header.triangles as usize;
-        check::walk(
-            tree.nodes(),
-            tree.references(),
-            header.bounds,
-            triangles,
-            |_, _, _| (),
-        )?;
+        check::walk(tree.nodes(), tree.references(), header.bounds, triangles, |_, _, _| ())?;
         Ok(tree)
     }
 }
@@ -210,15 +185,10 @@ fn checked(bytes: &[u8]) -> Result<(Header, Counts), FileError> {
         return Err(FileError::BigEndian);
     }
     if !bytes.starts_with(MAGIC) {
-        return Err(FileError::Foreign {
-            found: bytes[..bytes.len().min(8)].to_vec(),
-        });
+        return Err(FileError::Foreign { found: bytes[..bytes.len().min(8)].to_vec() });
     }
     if bytes.len() < HEADER {
-        return Err(FileError::Length {
-            expected: HEADER as u128,
-            found: bytes.len(),
-        });
+        return Err(FileError::Length { expected: HEADER as u128, found: bytes.len() });
     }
     let version = u32::from_le_bytes(array(bytes, 8));
     if version != VERSION {
@@ -228,20 +198,14 @@ fn checked(bytes: &[u8]) -> Result<(Header, Counts), FileError> {
     let references = u64::from_le_bytes(array(bytes, 24));
     let expected = HEADER as u128 + 8 * u128::from(nodes) + 4 * u128::from(references);
     if expected != bytes.len() as u128 {
-        return Err(FileError::Length {
-            expected,
-            found: bytes.len(),
-        });
+        return Err(FileError::Length { expected, found: bytes.len() });
     }
     let (expected, found) = (u64::from_le_bytes(array(bytes, CHECKSUM)), checksum(bytes));
     if expected != found {
         return Err(FileError::Checksum { expected, found });
     }
     // Both are less than the length of a slice.
-    let counts = Counts {
-        nodes: nodes as usize,
-        references: references as usize,
-    };
+    let counts = Counts { nodes: nodes as usize, references: references as usize };
     Ok((read_header(bytes)?, counts))
 }
 
@@ -249,52 +213,23 @@ fn read_header(bytes: &[u8]) -> Result<Header, FileError> {
     let f32_at = |offset| f32::from_le_bytes(array(bytes, offset));
     let f64_at = |offset| f64::from_le_bytes(array(bytes, offset));
     let vector = |offset: usize| [0, 4, 8].map(|step| f32_at(offset + step));
-    let bounds = Aabb {
-        lower: vector(32),
-        upper: vector(44),
-    };
-    let finite = bounds
-        .lower
-        .iter()
-        .chain(&bounds.upper)
-        .all(|value| value.is_finite());
+    let bounds = Aabb { lower: vector(32), upper: vector(44) };
+    let finite = bounds.lower.iter().chain(&bounds.upper).all(|value| value.is_finite());
     if !finite || bounds.is_empty() {
-        return Err(FileError::Header {
-            offset: 32,
-            what: "box",
-        });
+        return Err(FileError::Header { offset: 32, what: "box" });
     }
-    let frame = Frame {
-        origin: [56, 64, 72].map(f64_at),
-        scale: f64_at(80),
-    };
+    let frame = Frame { origin: [56, 64, 72].map(f64_at), scale: f64_at(80) };
     if !frame.origin.iter().all(|v| v.is_finite()) || !frame.scale.is_normal() || frame.scale < 0.0
     {
-        return Err(FileError::Header {
-            offset: 56,
-            what: "frame",
-        });
+        return Err(FileError::Header { offset: 56, what: "frame" });
     }
     let [traversal, intersect, empty_bonus] = vector(88);
-    let cost = Cost {
-        traversal,
-        intersect,
-        empty_bonus,
-    };
+    let cost = Cost { traversal, intersect, empty_bonus };
     if !(traversal > 0.0 && intersect > 0.0 && (0.0..1.0).contains(&empty_bonus)) {
-        return Err(FileError::Header {
-            offset: 88,
-            what: "cost",
-        });
+        return Err(FileError::Header { offset: 88, what: "cost" });
     }
     let triangles = u32::from_le_bytes(array(bytes, 12));
-    Ok(Header {
-        bounds,
-        frame,
-        cost,
-        triangles,
-        mesh: u64::from_le_bytes(array(bytes, 104)),
-    })
+    Ok(Header { bounds, frame, cost, triangles, mesh: u64::from_le_bytes(array(bytes, 104)) })
 }
 
 fn array<const N: usize>(bytes: &[u8], offset: usize) -> [u8; N] {

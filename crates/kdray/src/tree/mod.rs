@@ -100,10 +100,7 @@ impl Tree {
             mesh: mesh.fingerprint(),
         };
         let Growth { nodes, references } = growth;
-        Self {
-            header,
-            storage: Storage::Owned { nodes, references },
-        }
+        Self { header, storage: Storage::Owned { nodes, references } }
     }
 
     /// The nodes, in depth-first order; the root is the first.
@@ -122,11 +119,7 @@ impl Tree {
     pub fn references(&self) -> &[u32] {
         match &self.storage {
             Storage::Owned { references, .. } => references,
-            Storage::File {
-                bytes,
-                nodes,
-                references,
-            } => {
+            Storage::File { bytes, nodes, references } => {
                 let start = nodes * size_of::<Node>();
                 let end = start + references * size_of::<u32>();
                 bytemuck::cast_slice(&file::body((**bytes).as_ref())[start..end])

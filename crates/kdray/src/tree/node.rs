@@ -45,18 +45,12 @@ impl Node {
 
     #[inline]
     pub(crate) fn inner(axis: usize, position: f32, right: u32) -> Self {
-        Self {
-            first: position.to_bits(),
-            second: right << 2 | axis as u32,
-        }
+        Self { first: position.to_bits(), second: right << 2 | axis as u32 }
     }
 
     #[inline]
     pub(crate) fn leaf(first: u32, count: u32) -> Self {
-        Self {
-            first,
-            second: count << 2 | LEAF,
-        }
+        Self { first, second: count << 2 | LEAF }
     }
 
     /// The node, taken apart.
@@ -65,41 +59,25 @@ impl Node {
     pub fn kind(self) -> Kind {
         let index = (self.second >> 2) as usize;
         match self.second & 3 {
-            LEAF => Kind::Leaf {
-                first: self.first as usize,
-                count: index,
-            },
+            LEAF => Kind::Leaf { first: self.first as usize, count: index },
             axis => {
                 let position = f32::from_bits(self.first);
-                Kind::Inner {
-                    axis: axis as usize,
-                    position,
-                    right: index,
-                }
+                Kind::Inner { axis: axis as usize, position, right: index }
             }
         }
     }
 
     /// The same inner node with another right child.
     pub(crate) fn with_right(self, right: u32) -> Self {
-        Self {
-            second: right << 2 | self.second & 3,
-            ..self
-        }
+        Self { second: right << 2 | self.second & 3, ..self }
     }
 
     /// The same node where its subtree starts at node `nodes` and reference `references`.
     pub(crate) fn moved(self, nodes: u32, references: u32) -> Self {
         if self.second & 3 == LEAF {
-            Self {
-                first: self.first + references,
-                ..self
-            }
+            Self { first: self.first + references, ..self }
         } else {
-            Self {
-                second: self.second + (nodes << 2),
-                ..self
-            }
+            Self { second: self.second + (nodes << 2), ..self }
         }
     }
 }
@@ -119,22 +97,9 @@ mod tests {
     #[test]
     fn nodes_keep_what_they_are_made_of() {
         let inner = Node::inner(2, -1.5, 70).kind();
-        assert_eq!(
-            inner,
-            Kind::Inner {
-                axis: 2,
-                position: -1.5,
-                right: 70
-            }
-        );
+        assert_eq!(inner, Kind::Inner { axis: 2, position: -1.5, right: 70 });
         let leaf = Node::leaf(5, Node::MAX_INDEX as u32).kind();
-        assert_eq!(
-            leaf,
-            Kind::Leaf {
-                first: 5,
-                count: Node::MAX_INDEX
-            }
-        );
+        assert_eq!(leaf, Kind::Leaf { first: 5, count: Node::MAX_INDEX });
     }
 
     #[test]

@@ -65,11 +65,7 @@ impl Tree {
             self.bounds(),
             self.triangle_count(),
             |index, bounds, depth| {
-                let area = if root_area > 0.0 {
-                    bounds.half_area() / root_area
-                } else {
-                    0.0
-                };
+                let area = if root_area > 0.0 { bounds.half_area() / root_area } else { 0.0 };
                 stats.depth = stats.depth.max(depth);
                 match nodes[index].kind() {
                     Kind::Inner { .. } => stats.e_inner += area,
@@ -77,11 +73,7 @@ impl Tree {
                 }
             },
         );
-        debug_assert_eq!(
-            result,
-            Ok(()),
-            "builders and file checks only let trees through"
-        );
+        debug_assert_eq!(result, Ok(()), "builders and file checks only let trees through");
         stats
     }
 }

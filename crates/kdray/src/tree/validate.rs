@@ -55,26 +55,13 @@ impl Tree {
         self.check_leaves(mesh)?;
         let scene = self.bounds();
         let reach = |v: f32| f64::from(v.abs());
-        let largest = scene
-            .lower
-            .into_iter()
-            .chain(scene.upper)
-            .map(reach)
-            .fold(0.0, f64::max);
-        let cover = Cover {
-            tree: self,
-            thinnest: THINNEST * largest,
-        };
-        let missing = (0..mesh.triangles().len())
-            .into_par_iter()
-            .find_map_first(|triangle| {
-                let polygon = mesh.triangle(triangle).map(|corner| corner.map(f64::from));
-                let node = cover.find_missing(0, triangle as u32, &polygon)?;
-                Some(Violation::Missing {
-                    node,
-                    triangle: triangle as u32,
-                })
-            });
+        let largest = scene.lower.into_iter().chain(scene.upper).map(reach).fold(0.0, f64::max);
+        let cover = Cover { tree: self, thinnest: THINNEST * largest };
+        let missing = (0..mesh.triangles().len()).into_par_iter().find_map_first(|triangle| {
+            let polygon = mesh.triangle(triangle).map(|corner| corner.map(f64::from));
+            let node = cover.find_missing(0, triangle as u32, &polygon)?;
+            Some(Violation::Missing { node, triangle: triangle as u32 })
+        });
         missing.map_or(Ok(()), Err)
     }
 
@@ -86,39 +73,26 @@ impl Tree {
         if self.bounds() != mesh.bounds() {
             return other("bounds");
         }
-        if !self.is_of(mesh) {
-            other("positions or frames")
-        } else {
-            Ok(())
-        }
+        if !self.is_of(mesh) { other("positions or frames") } else { Ok(()) }
     }
 
     fn check_leaves(&self, mesh: &Mesh) -> Result<(), Violation> {
         let (nodes, references) = (self.nodes(), self.references());
         let mut unreached = None;
-        check::walk(
-            nodes,
-            references,
-            self.bounds(),
-            self.triangle_count(),
-            |node, bounds, _| {
-                let Kind::Leaf { first, count } = nodes[node].kind() else {
-                    return;
-                };
-                // The walk has not yet said whether the leaf's references are all there.
-                let leaf = references.get(first..).unwrap_or_default();
-                let astray = |triangle: &&u32| {
-                    let known = (**triangle as usize) < mesh.triangles().len();
-                    known && !touches(bounds, &mesh.triangle(**triangle as usize))
-                };
-                if let Some(triangle) = leaf.iter().take(count).find(astray) {
-                    unreached.get_or_insert(Violation::Unreached {
-                        node,
-                        triangle: *triangle,
-                    });
-                }
-            },
-        )?;
+        check::walk(nodes, references, self.bounds(), self.triangle_count(), |node, bounds, _| {
+            let Kind::Leaf { first, count } = nodes[node].kind() else {
+                return;
+            };
+            // The walk has not yet said whether the leaf's references are all there.
+            let leaf = references.get(first..).unwrap_or_default();
+            let astray = |triangle: &&u32| {
+                let known = (**triangle as usize) < mesh.triangles().len();
+                known && !touches(bounds, &mesh.triangle(**triangle as usize))
+            };
+            if let Some(triangle) = leaf.iter().take(count).find(astray) {
+                unreached.get_or_insert(Violation::Unreached { node, triangle: *triangle });
+            }
+        })?;
         unreached.map_or(Ok(()), Err)
     }
 }
@@ -145,11 +119,7 @@ impl Cover<'_> {
                 let leaf = &self.tree.references()[first..first + count];
                 leaf.binary_search(&triangle).is_err().then_some(node)
             }
-            Kind::Inner {
-                axis,
-                position,
-                right,
-            } => {
+            Kind::Inner { axis, position, right } => {
                 let position = f64::from(position);
                 let values = polygon.iter().map(|corner| corner[axis]);
                 let lower = values.clone().fold(f64::INFINITY, f64::min);

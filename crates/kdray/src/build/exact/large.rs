@@ -22,15 +22,7 @@ pub(super) fn build(context: &Context) -> Result<Growth, BuildError> {
     context.meter.charge("events", bytes)?;
     let [x, y, z] = on_axes(context, |axis| sorted_events(mesh, axis));
     let set = OwnedSet::root(mesh, [x, y, z]);
-    subtree(
-        context,
-        Booked { set, bytes },
-        Node {
-            bounds: mesh.bounds(),
-            depth: 0,
-            share: 1.0,
-        },
-    )
+    subtree(context, Booked { set, bytes }, Node { bounds: mesh.bounds(), depth: 0, share: 1.0 })
 }
 
 /// Runs `work` for the three axes, at the same time if the build has threads.
@@ -56,21 +48,15 @@ fn subtree(context: &Context, owned: Booked, node: Node) -> Result<Growth, Build
     };
     let mut workspace = Workspace::default();
     let sizes = workspace.assign(&set, &node.bounds, &candidate, &cost, context);
-    let children = node.cut(
-        candidate.axis,
-        candidate.position,
-        [sizes.left, sizes.right],
-    );
+    let children = node.cut(candidate.axis, candidate.position, [sizes.left, sizes.right]);
     let (left, right) = if sizes.is_cut_off() {
         cut_off(context, owned, children, sizes)
     } else {
         let [left, right] = split(context, &set, workspace, sizes)?;
         context.meter.release(owned.bytes);
         drop(owned);
-        context.join(
-            || subtree(context, left, children[0]),
-            || subtree(context, right, children[1]),
-        )
+        context
+            .join(|| subtree(context, left, children[0]), || subtree(context, right, children[1]))
     };
     joined(context, &candidate, &left?, &right?)
 }
@@ -116,16 +102,11 @@ fn split(
     let counts = [sizes.left, sizes.right];
     let bytes = counts.map(OwnedSet::bytes);
     let work_bytes = workspace.bytes(set.triangles.len());
-    context
-        .meter
-        .charge("split", bytes[0] + bytes[1] + work_bytes)?;
+    context.meter.charge("split", bytes[0] + bytes[1] + work_bytes)?;
     let [mut left, mut right] = counts.map(OwnedSet::with_room);
     workspace.name(set, [left.triangles_mut(), right.triangles_mut()]);
     let lists = left.events_mut().into_iter().zip(right.events_mut());
-    let mut axes: Vec<_> = lists
-        .enumerate()
-        .map(|(axis, lists)| (axis, lists, [0; 2]))
-        .collect();
+    let mut axes: Vec<_> = lists.enumerate().map(|(axis, lists)| (axis, lists, [0; 2])).collect();
     let workspace = &workspace;
     let split_axis = |(axis, (left, right), lengths): &mut (usize, (&mut [_], &mut [_]), _)| {
         *lengths = workspace.split_axis(*axis, set.events[*axis], [left, right]);
@@ -141,16 +122,7 @@ fn split(
     right.truncate(sizes.right, lengths.map(|[_, right]| right));
     context.meter.release(work_bytes);
     let [left_bytes, right_bytes] = bytes;
-    Ok([
-        Booked {
-            set: left,
-            bytes: left_bytes,
-        },
-        Booked {
-            set: right,
-            bytes: right_bytes,
-        },
-    ])
+    Ok([Booked { set: left, bytes: left_bytes }, Booked { set: right, bytes: right_bytes }])
 }
 
 /// An inner node over two finished subtrees.
@@ -169,9 +141,7 @@ fn joined(
     growth.append(left);
     growth.set_right(place);
     growth.append(right);
-    context
-        .meter
-        .release(left.capacity_bytes() + right.capacity_bytes());
+    context.meter.release(left.capacity_bytes() + right.capacity_bytes());
     growth.check_size()?;
     Ok(growth)
 }

@@ -69,31 +69,19 @@ impl Context<'_> {
         a: impl FnOnce() -> A + Send,
         b: impl FnOnce() -> B + Send,
     ) -> (A, B) {
-        if self.limits.threads > 1 {
-            rayon::join(a, b)
-        } else {
-            (a(), b())
-        }
+        if self.limits.threads > 1 { rayon::join(a, b) } else { (a(), b()) }
     }
 }
 
 /// The exact tree.
 pub(super) fn build(mesh: &Mesh, limits: &Limits, meter: &Meter) -> Result<Growth, BuildError> {
-    let context = Context {
-        mesh,
-        limits,
-        meter,
-        idle: Mutex::default(),
-    };
+    let context = Context { mesh, limits, meter, idle: Mutex::default() };
     if limits.threads == 1 {
         return large::build(&context);
     }
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(limits.threads)
-        .build()
-        .map_err(|error| BuildError::Threads {
-            threads: limits.threads,
-            reason: error.to_string(),
+    let pool =
+        rayon::ThreadPoolBuilder::new().num_threads(limits.threads).build().map_err(|error| {
+            BuildError::Threads { threads: limits.threads, reason: error.to_string() }
         })?;
     pool.install(|| large::build(&context))
 }

@@ -2,6 +2,7 @@
 
 use super::event::{Event, events_of};
 use crate::geometry::{Aabb, Mesh};
+use crate::memory::{with_huge_pages, zeros_in_huge_pages};
 
 /// References of a node. Reference `i` is triangle `triangles[i]`; they ascend. Its bounds are
 /// nowhere but in the events.
@@ -32,9 +33,9 @@ pub(super) const fn room_sizes(count: usize) -> (usize, usize) {
 impl OwnedSet {
     /// Empty lists with room for `count` references.
     pub(super) fn with_room(count: usize) -> Self {
-        let events = || bytemuck::allocation::zeroed_vec(2 * count + 1);
+        let events = || zeros_in_huge_pages(2 * count + 1);
         Self {
-            triangles: bytemuck::allocation::zeroed_vec(count + 1),
+            triangles: zeros_in_huge_pages(count + 1),
             events: [events(), events(), events()],
         }
     }
@@ -64,24 +65,18 @@ impl OwnedSet {
 
     pub(super) fn as_set(&self) -> Set<'_> {
         let [x, y, z] = &self.events;
-        Set {
-            triangles: &self.triangles,
-            events: [x, y, z],
-        }
+        Set { triangles: &self.triangles, events: [x, y, z] }
     }
 
     /// All triangles of `mesh`, with their events along `axis` sorted by `sorted_events`.
     pub(super) fn root(mesh: &Mesh, events: [Vec<Event>; 3]) -> Self {
-        Self {
-            triangles: (0..mesh.triangles().len() as u32).collect(),
-            events,
-        }
+        Self { triangles: (0..mesh.triangles().len() as u32).collect(), events }
     }
 }
 
 /// The events of all triangles along `axis`, in order.
 pub(super) fn sorted_events(mesh: &Mesh, axis: usize) -> Vec<Event> {
-    let mut events = Vec::with_capacity(2 * mesh.triangles().len());
+    let mut events = with_huge_pages(2 * mesh.triangles().len());
     for triangle in 0..mesh.triangles().len() {
         let bounds = Aabb::of_points(&mesh.triangle(triangle));
         let (first, second) = events_of(&bounds, axis, triangle as u32);
@@ -99,17 +94,8 @@ impl<'a> Room<'a> {
         let (x, rest) = scratch.events.split_at_mut(2 * count + 1);
         let (y, rest) = rest.split_at_mut(2 * count + 1);
         let (z, free_events) = rest.split_at_mut(2 * count + 1);
-        let free = Scratch {
-            triangles: free_triangles,
-            events: free_events,
-        };
-        (
-            Self {
-                triangles,
-                events: [x, y, z],
-            },
-            free,
-        )
+        let free = Scratch { triangles: free_triangles, events: free_events };
+        (Self { triangles, events: [x, y, z] }, free)
     }
 
     /// What was filled.
@@ -131,10 +117,7 @@ pub(super) struct Scratch<'a> {
 impl Scratch<'_> {
     /// The same memory for a shorter time.
     pub(super) fn reborrow(&mut self) -> Scratch<'_> {
-        Scratch {
-            triangles: self.triangles,
-            events: self.events,
-        }
+        Scratch { triangles: self.triangles, events: self.events }
     }
 
     /// Whether two children with `counts` references find room.

@@ -5,6 +5,7 @@ use super::set::{Room, Scratch, Set, room_sizes};
 use super::split::Workspace;
 use super::sweep::{cheapest, sweep};
 use super::{BuildError, Context, Growth, Node};
+use crate::memory::zeros_in_huge_pages;
 
 /// What the task of a small subtree works with.
 #[derive(Default)]
@@ -22,24 +23,12 @@ const SCRATCH: usize = 4;
 /// Builds the subtree of a node.
 pub(super) fn build(context: &Context, set: Set, node: Node) -> Result<Growth, BuildError> {
     context.meter.check_cancelled()?;
-    let idle = || {
-        context
-            .idle
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
-    };
+    let idle = || context.idle.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     let mut small = idle().pop().unwrap_or_default();
     small.reserve(context, set.triangles.len())?;
     let mut growth = Growth::default();
-    let scratch = Scratch {
-        triangles: &mut small.triangles,
-        events: &mut small.events,
-    };
-    let mut subtree = Subtree {
-        context,
-        workspace: &mut small.workspace,
-        growth: &mut growth,
-    };
+    let scratch = Scratch { triangles: &mut small.triangles, events: &mut small.events };
+    let mut subtree = Subtree { context, workspace: &mut small.workspace, growth: &mut growth };
     subtree.node(set, node, scratch)?;
     idle().push(small);
     context.meter.charge("tree", growth.capacity_bytes())?;
@@ -56,10 +45,10 @@ impl Small {
             + more(triangles, self.triangles.len()) * size_of::<u32>();
         context.meter.charge("small subtree", bytes)?;
         if events > self.events.len() {
-            self.events = bytemuck::allocation::zeroed_vec(events);
+            self.events = zeros_in_huge_pages(events);
         }
         if triangles > self.triangles.len() {
-            self.triangles = bytemuck::allocation::zeroed_vec(triangles);
+            self.triangles = zeros_in_huge_pages(triangles);
         }
         Ok(())
     }
@@ -87,18 +76,12 @@ impl Subtree<'_> {
             self.growth.push_leaf(set.triangles);
             return Ok(());
         };
-        let sizes = self
-            .workspace
-            .assign(&set, &node.bounds, &candidate, &cost, self.context);
+        let sizes = self.workspace.assign(&set, &node.bounds, &candidate, &cost, self.context);
         let counts = [sizes.left, sizes.right];
         let [left, right] = node.cut(candidate.axis, candidate.position, counts);
         let place = self.growth.push_inner(candidate.axis, candidate.position);
         if sizes.is_cut_off() {
-            let (left_set, right_set) = if sizes.left == 0 {
-                (EMPTY, set)
-            } else {
-                (set, EMPTY)
-            };
+            let (left_set, right_set) = if sizes.left == 0 { (EMPTY, set) } else { (set, EMPTY) };
             self.node(left_set, left, scratch.reborrow())?;
             self.growth.set_right(place);
             return self.node(right_set, right, scratch);
@@ -109,10 +92,7 @@ impl Subtree<'_> {
         }
         let mut more = Small::default();
         more.reserve(self.context, sizes.left + sizes.right)?;
-        let scratch = Scratch {
-            triangles: &mut more.triangles,
-            events: &mut more.events,
-        };
+        let scratch = Scratch { triangles: &mut more.triangles, events: &mut more.events };
         self.children(&set, scratch, counts, children, place)?;
         self.context.meter.release(more.bytes());
         Ok(())
@@ -142,24 +122,17 @@ impl Subtree<'_> {
     ) -> ([Set<'s>; 2], Scratch<'s>) {
         let (left_room, scratch) = Room::carve(scratch, left);
         let (right_room, scratch) = Room::carve(scratch, right);
-        self.workspace
-            .name(set, [left_room.triangles, right_room.triangles]);
+        self.workspace.name(set, [left_room.triangles, right_room.triangles]);
         let mut lengths = [[0; 3]; 2];
         for axis in 0..3 {
             let lists = [&mut *left_room.events[axis], &mut *right_room.events[axis]];
             [lengths[0][axis], lengths[1][axis]] =
                 self.workspace.split_axis(axis, set.events[axis], lists);
         }
-        let sets = [
-            left_room.into_set(left, lengths[0]),
-            right_room.into_set(right, lengths[1]),
-        ];
+        let sets = [left_room.into_set(left, lengths[0]), right_room.into_set(right, lengths[1])];
         (sets, scratch)
     }
 }
 
 /// The lists of a node without references.
-const EMPTY: Set<'static> = Set {
-    triangles: &[],
-    events: [&[], &[], &[]],
-};
+const EMPTY: Set<'static> = Set { triangles: &[], events: [&[], &[], &[]] };

@@ -72,18 +72,10 @@ impl Workspace {
         let sides = &self.sides[..set.triangles.len()];
         let left = sides.iter().filter(|side| **side == LEFT).count();
         let straddlers = self.parts.len();
-        let part_count = |side: usize| {
-            self.parts
-                .iter()
-                .filter(|parts| parts[side].is_some())
-                .count()
-        };
+        let part_count =
+            |side: usize| self.parts.iter().filter(|parts| parts[side].is_some()).count();
         let right = sides.len() - left - straddlers;
-        Sizes {
-            left: left + part_count(0),
-            right: right + part_count(1),
-            straddlers,
-        }
+        Sizes { left: left + part_count(0), right: right + part_count(1), straddlers }
     }
 
     fn mark_sides(&mut self, events: &[Event], count: usize, plane: &Plane) {
@@ -93,28 +85,16 @@ impl Workspace {
         let ordered = super::event::ordered(plane.position);
         let until = events.partition_point(|event| event.ordered_position() <= ordered);
         for event in &events[..until] {
-            let place = if event.is(Kind::End) {
-                event.reference()
-            } else {
-                count
-            };
+            let place = if event.is(Kind::End) { event.reference() } else { count };
             self.sides[place] = LEFT;
         }
         let from = events.partition_point(|event| event.ordered_position() < ordered);
         for event in &events[from..] {
-            let place = if event.is(Kind::Start) {
-                event.reference()
-            } else {
-                count
-            };
+            let place = if event.is(Kind::Start) { event.reference() } else { count };
             self.sides[place] = RIGHT;
         }
         if events.len() != 2 * count {
-            let flat = if plane.flat == Side::Left {
-                LEFT
-            } else {
-                RIGHT
-            };
+            let flat = if plane.flat == Side::Left { LEFT } else { RIGHT };
             for (index, event) in events.iter().enumerate().filter(|e| e.1.is(Kind::Planar)) {
                 let beyond = if index < until { flat } else { RIGHT };
                 self.sides[event.reference()] = if index < from { LEFT } else { beyond };
@@ -128,8 +108,7 @@ impl Workspace {
         for (reference, triangle) in set.triangles.iter().enumerate() {
             if self.sides[reference] == BOTH {
                 let corners = context.mesh.triangle(*triangle as usize);
-                self.parts
-                    .push(children.map(|child| context.limits.part(&corners, &child)));
+                self.parts.push(children.map(|child| context.limits.part(&corners, &child)));
             }
         }
     }
@@ -151,20 +130,13 @@ impl Workspace {
                 lefts += push_events(&mut self.fresh[0], below.as_ref(), lefts as u32);
                 rights += push_events(&mut self.fresh[1], above.as_ref(), rights as u32);
             } else {
-                let name = if side == LEFT {
-                    lefts as u32
-                } else {
-                    rights as u32 | TO_RIGHT
-                };
+                let name = if side == LEFT { lefts as u32 } else { rights as u32 | TO_RIGHT };
                 self.names[reference] = name;
                 lefts += usize::from(side == LEFT);
                 rights += usize::from(side == RIGHT);
             }
         }
-        self.fresh
-            .iter_mut()
-            .flatten()
-            .for_each(|events| events.sort_unstable());
+        self.fresh.iter_mut().flatten().for_each(|events| events.sort_unstable());
     }
 
     /// Splits the events of one axis into the lists of the children; gives the lists' lengths.
@@ -174,11 +146,7 @@ impl Workspace {
         old: &[Event],
         [left, right]: [&mut [Event]; 2],
     ) -> [usize; 2] {
-        let mut lists = Lists {
-            left,
-            right,
-            lengths: [0, 0],
-        };
+        let mut lists = Lists { left, right, lengths: [0, 0] };
         let mut old = old;
         let (mut new_left, mut new_right) = (&self.fresh[0][axis][..], &self.fresh[1][axis][..]);
         loop {
@@ -229,11 +197,7 @@ impl Lists<'_> {
             if first.order() != order {
                 break;
             }
-            let list = if child == 0 {
-                &mut *self.left
-            } else {
-                &mut *self.right
-            };
+            let list = if child == 0 { &mut *self.left } else { &mut *self.right };
             list[self.lengths[child]] = *first;
             self.lengths[child] += 1;
             *fresh = rest;
@@ -262,17 +226,10 @@ fn with_flat_side(
 ) -> Plane {
     let Candidate { axis, position, .. } = *candidate;
     if events.len() == 2 * count {
-        return Plane {
-            axis,
-            position,
-            flat: Side::Left,
-        };
+        return Plane { axis, position, flat: Side::Left };
     }
     let (mut left, mut flat, mut right) = (0, 0, count as i32);
-    for event in events
-        .iter()
-        .take_while(|event| event.position() <= position)
-    {
+    for event in events.iter().take_while(|event| event.position() <= position) {
         let at_plane = event.position() == position;
         match (event.is(Kind::Planar), event.is(Kind::End)) {
             (true, _) if at_plane => flat += 1,
@@ -286,14 +243,6 @@ fn with_flat_side(
     let distances = [position - bounds.lower[axis], bounds.upper[axis] - position];
     let price_left = cost.split(axis, distances, [left + flat, right]);
     let price_right = cost.split(axis, distances, [left, right + flat]);
-    let flat = if price_left <= price_right {
-        Side::Left
-    } else {
-        Side::Right
-    };
-    Plane {
-        axis,
-        position,
-        flat,
-    }
+    let flat = if price_left <= price_right { Side::Left } else { Side::Right };
+    Plane { axis, position, flat }
 }

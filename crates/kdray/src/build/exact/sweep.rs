@@ -100,13 +100,7 @@ impl Block {
     #[inline(always)]
     fn new(outside: f32) -> Self {
         let outside = super::event::ordered(outside);
-        Self {
-            ordered: [outside; BLOCK],
-            left: [0; BLOCK],
-            right: [0; BLOCK],
-            len: 0,
-            outside,
-        }
+        Self { ordered: [outside; BLOCK], left: [0; BLOCK], right: [0; BLOCK], len: 0, outside }
     }
 
     #[inline(always)]
@@ -129,11 +123,7 @@ struct Counter {
 impl Counter {
     #[inline(always)]
     fn new(count: usize) -> Self {
-        Self {
-            left: 0,
-            right: count as i32,
-            flat: None,
-        }
+        Self { left: 0, right: count as i32, flat: None }
     }
 
     /// Counts for a chunk without planars.
@@ -207,14 +197,7 @@ impl<'a> Pricing<'a> {
     fn new(bounds: &Aabb, cost: &'a NodeCost, axis: usize) -> Self {
         let (lower, upper) = (bounds.lower[axis], bounds.upper[axis]);
         let (best_price, best_ordered) = ([NO_PRICE; LANES], [u32::MAX; LANES]);
-        Self {
-            cost,
-            axis,
-            lower,
-            upper,
-            best_price,
-            best_ordered,
-        }
+        Self { cost, axis, lower, upper, best_price, best_ordered }
     }
 
     /// Prices the planes of `block` and empties it.
@@ -233,16 +216,8 @@ impl<'a> Pricing<'a> {
             let prices = self.price_lanes(ordered, left, right);
             for lane in 0..LANES {
                 let better = prices[lane] < best_price[lane];
-                best_price[lane] = if better {
-                    prices[lane]
-                } else {
-                    best_price[lane]
-                };
-                best_ordered[lane] = if better {
-                    ordered[lane]
-                } else {
-                    best_ordered[lane]
-                };
+                best_price[lane] = if better { prices[lane] } else { best_price[lane] };
+                best_ordered[lane] = if better { ordered[lane] } else { best_ordered[lane] };
             }
         }
         (self.best_price, self.best_ordered) = (best_price, best_ordered);
@@ -260,9 +235,7 @@ impl<'a> Pricing<'a> {
         for lane in 0..LANES {
             let position = position_of(ordered[lane]);
             let distances = [position - self.lower, self.upper - position];
-            let price = self
-                .cost
-                .split(self.axis, distances, [left[lane], right[lane]]);
+            let price = self.cost.split(self.axis, distances, [left[lane], right[lane]]);
             let inside = (position > self.lower) & (position < self.upper);
             prices[lane] = if inside { price.to_bits() } else { NO_PRICE };
         }
@@ -276,10 +249,6 @@ impl<'a> Pricing<'a> {
             .min()
             .filter(|(price, _)| *price < NO_PRICE)?;
         let position = position_of(ordered);
-        Some(Candidate {
-            price: f32::from_bits(price),
-            axis: self.axis,
-            position,
-        })
+        Some(Candidate { price: f32::from_bits(price), axis: self.axis, position })
     }
 }

@@ -107,10 +107,7 @@ impl Turned {
     #[inline]
     #[target_feature(enable = "avx2")]
     fn intervals(&self, [t_min, t_max]: [f32; 2], top: [f32; 2]) -> [__m256; 2] {
-        let (never, ever) = (
-            _mm256_set1_ps(f32::NEG_INFINITY),
-            _mm256_set1_ps(f32::INFINITY),
-        );
+        let (never, ever) = (_mm256_set1_ps(f32::NEG_INFINITY), _mm256_set1_ps(f32::INFINITY));
         // First level: the near half leaves at the plane, the far half enters there.
         let t_mins = _mm256_set_m128(_mm_set1_ps(t_min.max(top[0])), _mm_set1_ps(t_min));
         let t_maxs = _mm256_set_m128(_mm_set1_ps(t_max), _mm_set1_ps(t_max.min(top[1])));

@@ -21,11 +21,7 @@ pub(super) fn step(wide: &Wide, slabs: &Slabs, interval: [f32; 2], stack: &mut S
         let (mut t_min, mut t_max) = (interval[0], interval[1]);
         let mut pass = |lane: usize, far: usize| {
             let [enter, leave] = planes[lane];
-            if far == 1 {
-                t_min = t_min.max(enter)
-            } else {
-                t_max = t_max.min(leave)
-            }
+            if far == 1 { t_min = t_min.max(enter) } else { t_max = t_max.min(leave) }
         };
         // By level: whether the child is beyond the plane.
         let far = [rank >> 2, rank >> 1 & 1, rank & 1];
@@ -57,21 +53,12 @@ mod tests {
         let mut axes = 0;
         let planes = [0, 1, 2, 3, 4, 5, 6, 7].map(|lane: u32| {
             axes |= ((noise(state) * 3.0) as u32) << (2 * lane);
-            if noise(state) < 0.1 {
-                f32::INFINITY
-            } else {
-                noise(state)
-            }
+            if noise(state) < 0.1 { f32::INFINITY } else { noise(state) }
         });
         let mut wide = Wide {
             planes,
-            children: [0, 1, 2, 3, 4, 5, 6, 7].map(|child| {
-                if noise(state) < 0.2 {
-                    Child::EMPTY
-                } else {
-                    Child(child)
-                }
-            }),
+            children: [0, 1, 2, 3, 4, 5, 6, 7]
+                .map(|child| if noise(state) < 0.2 { Child::EMPTY } else { Child(child) }),
         };
         wide.planes[7] = f32::from_bits(axes & 0x3fff);
         wide
@@ -92,30 +79,16 @@ mod tests {
         for _ in 0..100_000 {
             let wide = random_wide(&mut state);
             let mut component = || {
-                if noise(&mut state) < 0.1 {
-                    0.0
-                } else {
-                    2.0 * noise(&mut state) - 1.0
-                }
+                if noise(&mut state) < 0.1 { 0.0 } else { 2.0 * noise(&mut state) - 1.0 }
             };
-            let (origin, direction) = (
-                [component(), component(), component()],
-                [component(), component(), 0.5],
-            );
+            let (origin, direction) =
+                ([component(), component(), component()], [component(), component(), 0.5]);
             let slabs = Slabs::new(&Ray::new(origin, direction), 1.0);
             let interval = [0.2 * noise(&mut state), 2.0 * noise(&mut state)];
             let (mut plain, mut lanes) = (Stack::new(), Stack::new());
             step(&wide, &slabs, interval, &mut plain);
             // SAFETY: the processor has AVX2.
-            unsafe {
-                avx2::step(
-                    &wide,
-                    &slabs,
-                    &avx2::Lanes::new(&slabs),
-                    interval,
-                    &mut lanes,
-                )
-            };
+            unsafe { avx2::step(&wide, &slabs, &avx2::Lanes::new(&slabs), interval, &mut lanes) };
             let plain = entries(plain);
             met += plain.len();
             assert_eq!(plain, entries(lanes), "{wide:?} {slabs:?} {interval:?}");

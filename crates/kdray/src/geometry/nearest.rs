@@ -1,0 +1,93 @@
+//! The point of a triangle nearest to another point.
+
+/// A point of a triangle: `(1 - u - v) v0 + u v1 + v v2`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Nearest {
+    pub(crate) point: [f64; 3],
+    pub(crate) squared_distance: f64,
+    pub(crate) u: f64,
+    pub(crate) v: f64,
+}
+
+type Vector = [f64; 3];
+
+/// The nearest point of the triangle, in double precision [Eri05], section 5.1.5.
+///
+/// Degenerate triangles are the segments or points that they are.
+pub(crate) fn nearest_on_triangle(point: [f32; 3], corners: &[[f32; 3]; 3]) -> Nearest {
+    let p = point.map(f64::from);
+    let [a, b, c] = corners.map(|corner| corner.map(f64::from));
+    let (ab, ac) = (sub(b, a), sub(c, a));
+    let (ap, bp, cp) = (sub(p, a), sub(p, b), sub(p, c));
+    let (d1, d2) = (dot(ab, ap), dot(ac, ap));
+    let (d3, d4) = (dot(ab, bp), dot(ac, bp));
+    let (d5, d6) = (dot(ab, cp), dot(ac, cp));
+    // Areas of the triangles that the projected point makes with the edges.
+    let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
+    let inside = va > 0.0 && vb > 0.0 && vc > 0.0;
+    if inside {
+        let scale = 1.0 / (va + vb + vc);
+        return at(p, [a, b, c], vb * scale, vc * scale);
+    }
+    let edges = [on_edge(p, a, b), on_edge(p, a, c), on_edge(p, b, c)];
+    let candidates = [
+        at(p, [a, b, c], edges[0], 0.0),
+        at(p, [a, b, c], 0.0, edges[1]),
+        at(p, [a, b, c], 1.0 - edges[2], edges[2]),
+    ];
+    let nearer = |best: Nearest, other: Nearest| {
+        if other.squared_distance < best.squared_distance { other } else { best }
+    };
+    nearer(nearer(candidates[0], candidates[1]), candidates[2])
+}
+
+/// How far along the edge from `a` to `b` its nearest point is.
+fn on_edge(p: Vector, a: Vector, b: Vector) -> f64 {
+    let along = sub(b, a);
+    let length = dot(along, along);
+    if length == 0.0 { 0.0 } else { (dot(along, sub(p, a)) / length).clamp(0.0, 1.0) }
+}
+
+fn at(p: Vector, [a, b, c]: [Vector; 3], u: f64, v: f64) -> Nearest {
+    let (ab, ac) = (sub(b, a), sub(c, a));
+    let point = [0, 1, 2].map(|axis| a[axis] + (u * ab[axis] + v * ac[axis]));
+    let away = sub(p, point);
+    Nearest { point, squared_distance: dot(away, away), u, v }
+}
+
+fn sub(a: Vector, b: Vector) -> Vector {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CORNERS: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+
+    #[test]
+    fn faces_edges_and_corners_are_found() {
+        let cases = [
+            ([1.0, 1.0, 3.0], [1.0, 1.0, 0.0]),
+            ([2.0, -5.0, 0.0], [2.0, 0.0, 0.0]),
+            ([-1.0, -1.0, 2.0], [0.0, 0.0, 0.0]),
+            ([9.0, -1.0, 0.0], [4.0, 0.0, 0.0]),
+            ([3.0, 3.0, 1.0], [2.0, 2.0, 0.0]),
+        ];
+        for (point, expected) in cases {
+            assert_eq!(nearest_on_triangle(point, &CORNERS).point, expected, "{point:?}");
+        }
+    }
+
+    #[test]
+    fn degenerate_triangles_have_nearest_points_too() {
+        let segment = [[0.0; 3], [2.0, 0.0, 0.0], [1.0, 0.0, 0.0]];
+        assert_eq!(nearest_on_triangle([1.5, 1.0, 0.0], &segment).point, [1.5, 0.0, 0.0]);
+        let point = [[1.0, 2.0, 3.0]; 3];
+        assert_eq!(nearest_on_triangle([0.0; 3], &point).point, [1.0, 2.0, 3.0]);
+    }
+}

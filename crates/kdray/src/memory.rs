@@ -1,0 +1,37 @@
+//! Large arrays in large pages.
+
+/// A page of the size that processors translate in one step.
+const HUGE_PAGE: usize = 2 << 20;
+
+/// An empty vector with room for `capacity` elements, in huge pages where the system has them.
+///
+/// Trees are read in no order, so most reads of a large one miss the table of recently used pages;
+/// with pages of 2 MiB that table covers the whole tree.
+pub(crate) fn with_huge_pages<T>(capacity: usize) -> Vec<T> {
+    let vector: Vec<T> = Vec::with_capacity(capacity);
+    advise_huge_pages(vector.as_ptr().cast::<u8>(), capacity * size_of::<T>());
+    vector
+}
+
+/// `count` zeros, in huge pages where the system has them.
+pub(crate) fn zeros_in_huge_pages<T: bytemuck::Zeroable>(count: usize) -> Vec<T> {
+    let vector: Vec<T> = bytemuck::allocation::zeroed_vec(count);
+    advise_huge_pages(vector.as_ptr().cast::<u8>(), count * size_of::<T>());
+    vector
+}
+
+/// Asks for huge pages within the bytes at `start`, before they are first used.
+#[cfg(target_os = "linux")]
+fn advise_huge_pages(start: *const u8, bytes: usize) {
+    let padding = start.align_offset(HUGE_PAGE);
+    if padding >= bytes {
+        return;
+    }
+    let bytes = (bytes - padding) / HUGE_PAGE * HUGE_PAGE;
+    // SAFETY: the pages lie inside an allocation, and the advice does not change what they hold.
+    // That the system may not follow it is no error.
+    unsafe { libc::madvise(start.add(padding).cast_mut().cast(), bytes, libc::MADV_HUGEPAGE) };
+}
+
+#[cfg(not(target_os = "linux"))]
+fn advise_huge_pages(_start: *const u8, _bytes: usize) {}

@@ -1,0 +1,148 @@
+//! What the queries keep of the hits they are shown.
+
+use super::Counts;
+use super::traverse::{ENOUGH, Visitor};
+use crate::geometry::{Hit, Ray};
+
+/// Keeps the first hit.
+pub(super) struct Closest<F> {
+    t_min: f32,
+    t_max: f32,
+    accept: F,
+    pub(super) hit: Option<Hit>,
+}
+
+impl<F> Closest<F> {
+    pub(super) fn new(ray: &Ray, accept: F) -> Self {
+        Self { t_min: ray.t_min, t_max: ray.t_max, accept, hit: None }
+    }
+}
+
+impl<F: Fn(u32) -> bool> Visitor for Closest<F> {
+    #[inline(always)]
+    fn hit(&mut self, hit: Hit) -> f32 {
+        let tie = || self.hit.is_none_or(|best| hit.triangle < best.triangle);
+        let first = hit.t < self.t_max || hit.t == self.t_max && tie();
+        if self.t_min <= hit.t && first && (self.accept)(hit.triangle) {
+            self.t_max = hit.t;
+            self.hit = Some(hit);
+        }
+        self.t_max
+    }
+}
+
+/// Counts while it looks for the first hit.
+pub(super) struct Counted<F> {
+    pub(super) closest: Closest<F>,
+    pub(super) counts: Counts,
+}
+
+impl<F: Fn(u32) -> bool> Visitor for Counted<F> {
+    fn hit(&mut self, hit: Hit) -> f32 {
+        self.closest.hit(hit)
+    }
+
+    fn step(&mut self) {
+        self.counts.steps += 1;
+    }
+
+    fn leaf(&mut self) {
+        self.counts.leaves += 1;
+    }
+
+    fn test(&mut self) {
+        self.counts.tests += 1;
+    }
+}
+
+/// Is content with any hit.
+pub(super) struct Any<F> {
+    pub(super) t_min: f32,
+    pub(super) t_max: f32,
+    pub(super) accept: F,
+    pub(super) found: bool,
+}
+
+impl<F: Fn(u32) -> bool> Visitor for Any<F> {
+    #[inline(always)]
+    fn hit(&mut self, hit: Hit) -> f32 {
+        let inside = self.t_min <= hit.t && hit.t <= self.t_max;
+        self.found = inside && (self.accept)(hit.triangle);
+        if self.found { ENOUGH } else { self.t_max }
+    }
+}
+
+/// Keeps the first hits, at most `limit` of them, in order and each once.
+///
+/// A triangle in several leaves gives the very same hit in each of them, so repeated hits are
+/// equal and stand side by side. Leaves come from front to back: a hit finds its place by looking
+/// back over the few that are beyond it.
+pub(super) struct FirstHits<'a, F> {
+    t_min: f32,
+    t_max: f32,
+    limit: usize,
+    accept: F,
+    hits: &'a mut Vec<Hit>,
+}
+
+impl<'a, F> FirstHits<'a, F> {
+    /// Keeps them in `hits`, which is empty; `limit` is not zero.
+    pub(super) fn new(ray: &Ray, limit: usize, accept: F, hits: &'a mut Vec<Hit>) -> Self {
+        Self { t_min: ray.t_min, t_max: ray.t_max, limit, accept, hits }
+    }
+}
+
+impl<F: Fn(u32) -> bool> Visitor for FirstHits<'_, F> {
+    #[inline(always)]
+    fn hit(&mut self, hit: Hit) -> f32 {
+        let inside = self.t_min <= hit.t && hit.t <= self.t_max;
+        if !inside || !(self.accept)(hit.triangle) {
+            return self.t_max;
+        }
+        let beyond = self.hits.iter().rev().take_while(|other| comes_before(&hit, other)).count();
+        let place = self.hits.len() - beyond;
+        let repeated = place > 0 && self.hits[place - 1].triangle == hit.triangle;
+        if !repeated && place < self.limit {
+            self.hits.truncate(self.limit - 1);
+            self.hits.insert(place, hit);
+        }
+        if self.hits.len() == self.limit {
+            // Not nearer: a hit at this very `t` may have a lower triangle.
+            self.t_max = self.hits[self.limit - 1].t;
+        }
+        self.t_max
+    }
+}
+
+/// Hits come in order of `t`; of several at one `t` the lowest triangle comes first.
+fn comes_before(a: &Hit, b: &Hit) -> bool {
+    a.t < b.t || a.t == b.t && a.triangle < b.triangle
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keep(limit: usize, shown: &[(f32, u32)]) -> Vec<(f32, u32)> {
+        let mut hits = Vec::new();
+        let ray = Ray::new([0.0; 3], [1.0, 0.0, 0.0]);
+        let mut first = FirstHits::new(&ray, limit, |_| true, &mut hits);
+        for (t, triangle) in shown {
+            first.hit(Hit { t: *t, triangle: *triangle, u: 0.0, v: 0.0 });
+        }
+        hits.iter().map(|hit| (hit.t, hit.triangle)).collect()
+    }
+
+    const SHOWN: [(f32, u32); 6] = [(2.0, 7), (1.0, 9), (2.0, 7), (2.0, 3), (0.5, 1), (2.0, 3)];
+
+    #[test]
+    fn hits_are_kept_in_order_and_once() {
+        assert_eq!(keep(9, &SHOWN), [(0.5, 1), (1.0, 9), (2.0, 3), (2.0, 7)]);
+    }
+
+    #[test]
+    fn no_more_are_kept_than_wanted() {
+        assert_eq!(keep(3, &SHOWN), [(0.5, 1), (1.0, 9), (2.0, 3)]);
+        assert_eq!(keep(1, &SHOWN), [(0.5, 1)]);
+    }
+}
