@@ -181,18 +181,13 @@ impl Definition {
     /// Keeps only the named scenes and engines; an empty list keeps all.
     pub(crate) fn select(&mut self, scenes: &[String], engines: &[String]) -> Result<()> {
         for name in scenes {
-            ensure!(
-                self.scenes.iter().any(|s| s.name == *name),
-                "no scene is called {name}"
-            );
+            ensure!(self.scenes.iter().any(|s| s.name == *name), "no scene is called {name}");
         }
         for name in engines {
             self.engine(name)?;
         }
-        self.scenes
-            .retain(|s| scenes.is_empty() || scenes.contains(&s.name));
-        self.engines
-            .retain(|e| engines.is_empty() || engines.contains(&e.name));
+        self.scenes.retain(|s| scenes.is_empty() || scenes.contains(&s.name));
+        self.engines.retain(|e| engines.is_empty() || engines.contains(&e.name));
         Ok(())
     }
 
@@ -207,10 +202,7 @@ impl Definition {
             self.resolution > 0 && self.resolution.is_multiple_of(tile),
             "resolution must be a positive multiple of {tile}"
         );
-        ensure!(
-            self.build_passes > 0 && self.trace_passes > 0,
-            "passes must be at least 1"
-        );
+        ensure!(self.build_passes > 0 && self.trace_passes > 0, "passes must be at least 1");
         self.engine(&self.baseline).context("baseline")?;
         unique(self.scenes.iter().map(|scene| &scene.name))?;
         unique(self.engines.iter().map(|engine| &engine.name))?;
@@ -228,11 +220,7 @@ impl EngineDefinition {
             bail!("engine {}: only Embree takes packets", self.name);
         }
         ensure!(!self.modes.is_empty(), "engine {}: no mode", self.name);
-        ensure!(
-            self.passes != Some(0),
-            "engine {}: passes must be at least 1",
-            self.name
-        );
+        ensure!(self.passes != Some(0), "engine {}: passes must be at least 1", self.name);
         Ok(())
     }
 }
@@ -273,9 +261,7 @@ mod tests {
     #[test]
     fn every_shipped_definition_is_valid() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../bench/definitions");
-        let files: Vec<_> = fs::read_dir(folder)
-            .expect("definitions are shipped")
-            .collect();
+        let files: Vec<_> = fs::read_dir(folder).expect("definitions are shipped").collect();
         assert!(!files.is_empty());
         for file in files {
             let path = file.expect("the folder can be listed").path();
@@ -286,34 +272,16 @@ mod tests {
     #[test]
     fn mistakes_are_named() {
         let cases = [
-            (
-                SMALL.replace("resolution = 64", "resolution = 63"),
-                "multiple of 4",
-            ),
-            (
-                SMALL.replace("baseline = \"a\"", "baseline = \"z\""),
-                "no engine is called z",
-            ),
+            (SMALL.replace("resolution = 64", "resolution = 63"), "multiple of 4"),
+            (SMALL.replace("baseline = \"a\"", "baseline = \"z\""), "no engine is called z"),
             (SMALL.replace("name = \"b\"", "name = \"a\""), "used twice"),
-            (
-                SMALL.replace("name = \"b\"", "name = \"b\"\nmodes = [\"packet8\"]"),
-                "packets",
-            ),
-            (
-                SMALL.replace("trace_passes = 1", "trace_passes = 0"),
-                "at least 1",
-            ),
-            (
-                SMALL.replace("traversal = 15", "speed = 15"),
-                "unknown field",
-            ),
+            (SMALL.replace("name = \"b\"", "name = \"b\"\nmodes = [\"packet8\"]"), "packets"),
+            (SMALL.replace("trace_passes = 1", "trace_passes = 0"), "at least 1"),
+            (SMALL.replace("traversal = 15", "speed = 15"), "unknown field"),
         ];
         for (text, reason) in cases {
             let error = Definition::parse(&text).expect_err(reason);
-            assert!(
-                format!("{error:#}").contains(reason),
-                "{error:#} should say {reason}"
-            );
+            assert!(format!("{error:#}").contains(reason), "{error:#} should say {reason}");
         }
     }
 

@@ -47,10 +47,7 @@ pub(crate) struct Hit {
 
 impl Hit {
     /// What a ray that hits nothing gets.
-    pub(crate) const MISS: Hit = Hit {
-        t: f32::INFINITY,
-        triangle: u32::MAX,
-    };
+    pub(crate) const MISS: Hit = Hit { t: f32::INFINITY, triangle: u32::MAX };
 
     /// Whether this is a hit.
     pub(crate) fn is_hit(self) -> bool {

@@ -17,6 +17,7 @@ mod table;
 mod trace;
 
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
 use clap::{Args, Parser, Subcommand};
@@ -24,6 +25,7 @@ use clap::{Args, Parser, Subcommand};
 use crate::definition::{Definition, Library};
 use crate::record::{Machine, Measured, Record};
 use crate::run::Setting;
+use crate::table::Clock;
 
 #[global_allocator]
 static ALLOCATOR: memory::Counting = memory::Counting;
@@ -44,6 +46,9 @@ enum Command {
     Table {
         /// A file made by `run` or `scaling`
         record: PathBuf,
+        /// By CPU seconds, the better measure where other programs were running
+        #[arg(long)]
+        cpu: bool,
     },
     /// Times kdray's build of the generated scene at doubling sizes
     Scaling(ScalingArguments),
@@ -96,19 +101,33 @@ struct ScalingArguments {
     output: Option<PathBuf>,
 }
 
-fn main() -> Result<()> {
-    match Cli::parse().command {
-        Command::Run(arguments) => run(&arguments),
-        Command::Table { record } => {
-            print!("{}", table::markdown(&Record::load(&record)?));
+fn main() -> ExitCode {
+    match carry_out(&Cli::parse().command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn carry_out(command: &Command) -> Result<()> {
+    match command {
+        Command::Run(arguments) => run(arguments),
+        Command::Table { record, cpu } => {
+            let clock = if *cpu { Clock::Cpu } else { Clock::Wall };
+            print!("{}", table::markdown(&Record::load(record)?, clock));
             Ok(())
         }
-        Command::Scaling(arguments) => scaling(&arguments),
+        Command::Scaling(arguments) => scaling(arguments),
     }
 }
 
 fn run(arguments: &RunArguments) -> Result<()> {
-    ensure!(!arguments.threads.contains(&0), "--threads: at least 1");
+    let mut threads = arguments.threads.clone();
+    threads.sort_unstable();
+    threads.dedup();
+    ensure!(!threads.contains(&0), "--threads: at least 1");
     let machine = machine::machine();
     let mut definition = Definition::load(&arguments.definition)?;
     definition.select(&arguments.scenes, &arguments.engines)?;
@@ -116,49 +135,30 @@ fn run(arguments: &RunArguments) -> Result<()> {
         definition.build_passes = passes.into();
         definition.trace_passes = passes.into();
     }
-    let variable = std::env::var_os("KDRAY_EMBREE").map(PathBuf::from);
-    let embree = arguments.embree.clone().or(variable);
+    let variable = std::env::var_os("KDRAY_EMBREE").filter(|path| !path.is_empty());
+    let embree = arguments.embree.clone().or(variable.map(PathBuf::from));
     let setting = Setting {
         meshes: arguments.meshes.as_deref(),
         embree: embree.as_deref(),
-        threads: &arguments.threads,
+        threads: &threads,
         allow_missing: arguments.allow_missing,
     };
     let comparison = run::run(&definition, &setting)?;
-    let uses_embree = definition
-        .engines
-        .iter()
-        .any(|e| matches!(e.library, Library::Embree(_)));
+    let uses_embree = definition.engines.iter().any(|e| matches!(e.library, Library::Embree(_)));
     let library = embree.as_deref().filter(|_| uses_embree);
-    let record = finish(
-        machine,
-        library,
-        Measured::Engines(comparison),
-        arguments.output.as_deref(),
-    )?;
-    print!("{}", table::markdown(&record));
+    let record =
+        finish(machine, library, Measured::Engines(comparison), arguments.output.as_deref())?;
+    print!("{}", table::markdown(&record, Clock::Wall));
     Ok(())
 }
 
 fn scaling(arguments: &ScalingArguments) -> Result<()> {
-    let ScalingArguments {
-        from, to, threads, ..
-    } = *arguments;
-    ensure!(
-        0 < from && from <= to,
-        "--from must be at least 1 and at most --to"
-    );
+    let ScalingArguments { from, to, threads, .. } = *arguments;
+    ensure!(0 < from && from <= to, "--from must be at least 1 and at most --to");
     let machine = machine::machine();
     print!("{}", table::SIZE_HEAD);
-    let sizes = scaling::run(from, to, threads, |size| {
-        print!("{}", table::size_row(size))
-    })?;
-    finish(
-        machine,
-        None,
-        Measured::Scaling(sizes),
-        arguments.output.as_deref(),
-    )?;
+    let sizes = scaling::run(from, to, threads, |size| print!("{}", table::size_row(size)))?;
+    finish(machine, None, Measured::Scaling(sizes), arguments.output.as_deref())?;
     Ok(())
 }
 

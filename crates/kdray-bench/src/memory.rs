@@ -28,10 +28,7 @@ pub(crate) struct Meter {
 impl Meter {
     /// A meter at zero.
     pub(crate) const fn new() -> Meter {
-        Meter {
-            current: AtomicI64::new(0),
-            peak: AtomicI64::new(0),
-        }
+        Meter { current: AtomicI64::new(0), peak: AtomicI64::new(0) }
     }
 
     /// Starts again from zero.
@@ -49,10 +46,7 @@ impl Meter {
     /// What was counted since the last reset.
     pub(crate) fn memory(&self) -> Memory {
         let bytes = |counter: &AtomicI64| counter.load(Relaxed).try_into().unwrap_or(0);
-        Memory {
-            final_bytes: bytes(&self.current),
-            peak_bytes: bytes(&self.peak),
-        }
+        Memory { final_bytes: bytes(&self.current), peak_bytes: bytes(&self.peak) }
     }
 }
 
@@ -111,13 +105,7 @@ mod tests {
         meter.add(100);
         meter.add(50);
         meter.add(-120);
-        assert_eq!(
-            meter.memory(),
-            Memory {
-                final_bytes: 30,
-                peak_bytes: 150
-            }
-        );
+        assert_eq!(meter.memory(), Memory { final_bytes: 30, peak_bytes: 150 });
         meter.reset();
         assert_eq!(meter.memory(), Memory::default());
     }

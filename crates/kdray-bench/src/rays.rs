@@ -56,14 +56,7 @@ impl<'a> RayMaker<'a> {
         let (lower, upper) = (point(bounds.lower), point(bounds.upper));
         let extent = upper - lower;
         let (centre, diagonal) = (0.5 * (lower + upper), extent.length());
-        Self {
-            mesh,
-            resolution,
-            closest,
-            centre,
-            extent,
-            diagonal,
-        }
+        Self { mesh, resolution, closest, centre, extent, diagonal }
     }
 
     /// The rays of a set.
@@ -80,31 +73,19 @@ impl<'a> RayMaker<'a> {
 
     fn primary(&self) -> Vec<Ray> {
         let offset = DVec3::new(1.0, 0.6, 1.2).normalize();
-        camera(
-            self.centre + 1.5 * self.diagonal * offset,
-            -offset,
-            45.0,
-            self.resolution,
-        )
+        camera(self.centre + 1.5 * self.diagonal * offset, -offset, 45.0, self.resolution)
     }
 
     fn inside(&self) -> Vec<Ray> {
         let along_x = self.extent.x >= self.extent.z;
-        let forward = if along_x {
-            DVec3::new(1.0, 0.0, 0.3)
-        } else {
-            DVec3::new(0.3, 0.0, 1.0)
-        };
+        let forward = if along_x { DVec3::new(1.0, 0.0, 0.3) } else { DVec3::new(0.3, 0.0, 1.0) };
         camera(self.centre, forward.normalize(), 75.0, self.resolution)
     }
 
     fn bounce(&self, camera: &[Ray], stream: u64) -> Vec<Ray> {
         let mut random = Pcg32::new(SEED, stream);
         let scatter = |(origin, normal)| {
-            ray(
-                origin,
-                cosine_weighted(normal, uniform(&mut random), uniform(&mut random)),
-            )
+            ray(origin, cosine_weighted(normal, uniform(&mut random), uniform(&mut random)))
         };
         self.surface(camera).into_iter().map(scatter).collect()
     }
@@ -116,10 +97,7 @@ impl<'a> RayMaker<'a> {
             let [x, y, z] = std::array::from_fn(|_| uniform(&mut random));
             let way = corner + 0.2 * self.diagonal * DVec3::new(x, y, z) - origin;
             let t_max = (0.999 * way.length()) as f32;
-            Ray {
-                t_max,
-                ..ray(origin, way.normalize())
-            }
+            Ray { t_max, ..ray(origin, way.normalize()) }
         };
         self.surface(camera).into_iter().map(aim).collect()
     }
@@ -134,9 +112,7 @@ impl<'a> RayMaker<'a> {
             let (from, to) = (on_sphere(), on_sphere());
             ray(from, (to - from).normalize_or(DVec3::Y))
         };
-        (0..self.resolution * self.resolution)
-            .map(|_| chord())
-            .collect()
+        (0..self.resolution * self.resolution).map(|_| chord()).collect()
     }
 
     /// Lifted hit points of camera rays, with the normal on the viewer's side.
@@ -152,16 +128,9 @@ impl<'a> RayMaker<'a> {
 
     /// None for a miss, and for a triangle without an area.
     fn normal(&self, hit: Hit, direction: DVec3) -> Option<DVec3> {
-        let [a, b, c] = hit
-            .is_hit()
-            .then(|| self.mesh.triangle(hit.triangle as usize))?
-            .map(point);
+        let [a, b, c] = hit.is_hit().then(|| self.mesh.triangle(hit.triangle as usize))?.map(point);
         let normal = (b - a).cross(c - a).try_normalize()?;
-        Some(if normal.dot(direction) > 0.0 {
-            -normal
-        } else {
-            normal
-        })
+        Some(if normal.dot(direction) > 0.0 { -normal } else { normal })
     }
 }
 
@@ -172,12 +141,7 @@ fn camera(eye: DVec3, forward: DVec3, degrees: f64, resolution: u32) -> Vec<Ray>
     let up = half * right.cross(forward).normalize();
     let centre = |pixel: u32| 2.0 * (f64::from(pixel) + 0.5) / f64::from(resolution) - 1.0;
     tiled(resolution)
-        .map(|[x, y]| {
-            ray(
-                eye,
-                (forward + centre(x) * right - centre(y) * up).normalize(),
-            )
-        })
+        .map(|[x, y]| ray(eye, (forward + centre(x) * right - centre(y) * up).normalize()))
         .collect()
 }
 
@@ -186,10 +150,7 @@ fn tiled(resolution: u32) -> impl Iterator<Item = [u32; 2]> {
     let (tiles, area) = (resolution / TILE, TILE * TILE);
     (0..resolution * resolution).map(move |index| {
         let (tile, pixel) = (index / area, index % area);
-        [
-            tile % tiles * TILE + pixel % TILE,
-            tile / tiles * TILE + pixel / TILE,
-        ]
+        [tile % tiles * TILE + pixel % TILE, tile / tiles * TILE + pixel / TILE]
     })
 }
 
@@ -236,12 +197,7 @@ mod tests {
 
     /// A square in the plane y = 0, seen from above by `primary`.
     fn square() -> Mesh {
-        let positions = [
-            [-1.0, 0.0, -1.0],
-            [1.0, 0.0, -1.0],
-            [1.0, 0.0, 1.0],
-            [-1.0, 0.0, 1.0],
-        ];
+        let positions = [[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]];
         Mesh::new(&positions, &[[0, 1, 2], [0, 2, 3]]).expect("valid")
     }
 
@@ -260,10 +216,7 @@ mod tests {
 
     #[test]
     fn counts_follow_the_image_and_its_hits() {
-        let hits = plane_hits(&make(RaySet::Primary))
-            .iter()
-            .filter(|hit| hit.is_hit())
-            .count();
+        let hits = plane_hits(&make(RaySet::Primary)).iter().filter(|hit| hit.is_hit()).count();
         assert!(hits > 0);
         for set in [RaySet::Primary, RaySet::InPrimary, RaySet::Chord] {
             assert_eq!(make(set).len(), 32 * 32);
@@ -276,10 +229,7 @@ mod tests {
     #[test]
     fn directions_have_unit_length() {
         for ray in ALL.into_iter().flat_map(make) {
-            assert!(
-                (point(ray.direction).length() - 1.0).abs() < 1e-6,
-                "{ray:?}"
-            );
+            assert!((point(ray.direction).length() - 1.0).abs() < 1e-6, "{ray:?}");
         }
     }
 
@@ -308,10 +258,7 @@ mod tests {
         let sum: DVec3 = rays.iter().map(|ray| point(ray.direction)).sum();
         assert!(sum.normalize().distance(DVec3::X) < 1e-6);
         let (first, last) = (rays[0].direction, rays[15].direction);
-        assert!(
-            first[1] > 0.0 && last[1] < 0.0,
-            "rows run from top to bottom"
-        );
+        assert!(first[1] > 0.0 && last[1] < 0.0, "rows run from top to bottom");
         assert!(
             (f64::from(first[1] / first[0]) - 0.75).abs() < 1e-6,
             "pixel centres at 45 degrees"
@@ -321,19 +268,10 @@ mod tests {
     #[test]
     fn bounces_leave_on_the_viewers_side_with_a_cosine() {
         let rays = make(RaySet::Bounce);
-        assert!(
-            rays.iter()
-                .all(|ray| ray.direction[1] >= 0.0 && ray.origin[1] > 0.0)
-        );
-        let mean = rays
-            .iter()
-            .map(|ray| f64::from(ray.direction[1]))
-            .sum::<f64>()
-            / rays.len() as f64;
-        assert!(
-            (mean - 2.0 / 3.0).abs() < 0.05,
-            "the mean cosine is 2/3, got {mean}"
-        );
+        assert!(rays.iter().all(|ray| ray.direction[1] >= 0.0 && ray.origin[1] > 0.0));
+        let mean =
+            rays.iter().map(|ray| f64::from(ray.direction[1])).sum::<f64>() / rays.len() as f64;
+        assert!((mean - 2.0 / 3.0).abs() < 0.05, "the mean cosine is 2/3, got {mean}");
     }
 
     #[test]

@@ -99,6 +99,9 @@ pub(crate) struct TraceRecord {
     pub(crate) set: RaySet,
     /// Millions of rays per wall second.
     pub(crate) mrays: Spread,
+    /// The same by CPU seconds of the process, shared out among the tracing threads: on a busy
+    /// machine the nearer to what an idle one would give.
+    pub(crate) cpu_mrays: Spread,
     /// Share of the rays whose hit is not the baseline's, if the baseline ran.
     pub(crate) differ: Option<f64>,
 }
@@ -126,21 +129,13 @@ impl Spread {
         let mut sorted = samples.to_vec();
         sorted.sort_by(f64::total_cmp);
         let (best, median) = (*sorted.first()?, *sorted.get(sorted.len() / 2)?);
-        Some(Spread {
-            best,
-            median,
-            passes: sorted.len(),
-        })
+        Some(Spread { best, median, passes: sorted.len() })
     }
 
     /// Of rates, out of the times that `count` million rays took.
     pub(crate) fn of_rates(count: f64, seconds: &[f64]) -> Option<Spread> {
         let times = Spread::of_seconds(seconds)?;
-        Some(Spread {
-            best: count / times.best,
-            median: count / times.median,
-            ..times
-        })
+        Some(Spread { best: count / times.best, median: count / times.median, ..times })
     }
 }
 
@@ -152,9 +147,12 @@ impl Record {
         serde_json::from_str(&text).with_context(|| format!("in {}", path.display()))
     }
 
-    /// Writes the record as indented JSON.
+    /// Writes the record as indented JSON, in a folder that need not exist yet.
     pub(crate) fn save(&self, path: &Path) -> Result<()> {
         let text = serde_json::to_string_pretty(self)? + "\n";
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder).with_context(|| format!("making {}", folder.display()))?;
+        }
         fs::write(path, text).with_context(|| format!("writing {}", path.display()))
     }
 }
@@ -166,23 +164,9 @@ mod tests {
     #[test]
     fn a_spread_has_the_best_and_the_middle_pass() {
         let times = Spread::of_seconds(&[4.0, 1.0, 2.0]).expect("samples");
-        assert_eq!(
-            times,
-            Spread {
-                best: 1.0,
-                median: 2.0,
-                passes: 3
-            }
-        );
+        assert_eq!(times, Spread { best: 1.0, median: 2.0, passes: 3 });
         let rates = Spread::of_rates(8.0, &[4.0, 1.0, 2.0]).expect("samples");
-        assert_eq!(
-            rates,
-            Spread {
-                best: 8.0,
-                median: 4.0,
-                passes: 3
-            }
-        );
+        assert_eq!(rates, Spread { best: 8.0, median: 4.0, passes: 3 });
         assert_eq!(Spread::of_seconds(&[]), None);
     }
 }

@@ -17,7 +17,7 @@ pub(crate) struct Setting<'a> {
     pub(crate) meshes: Option<&'a Path>,
     /// Embree's shared library.
     pub(crate) embree: Option<&'a Path>,
-    /// Numbers of threads to build and trace with.
+    /// Numbers of threads to build and trace with, ascending.
     pub(crate) threads: &'a [usize],
     /// Goes on without engines and scenes that are not there.
     pub(crate) allow_missing: bool,
@@ -34,11 +34,7 @@ pub(crate) fn run(definition: &Definition, setting: &Setting) -> Result<Comparis
         bail!("{}\n(--allow-missing goes on without)", missing.join("\n"));
     }
     let progress = progress(definition, setting, &scenes, &engines);
-    let bench = Bench {
-        definition,
-        threads: setting.threads,
-        progress: &progress,
-    };
+    let bench = Bench { definition, threads: setting.threads, progress: &progress };
     let mut records = Vec::new();
     for (scene, mesh) in &scenes {
         progress.set_prefix(scene.name.clone());
@@ -87,10 +83,7 @@ fn progress(
     scenes: &[(&SceneDefinition, Mesh)],
     engines: &[Present],
 ) -> ProgressBar {
-    let steps: usize = scenes
-        .iter()
-        .map(|(scene, _)| steps(definition, scene, engines))
-        .sum();
+    let steps: usize = scenes.iter().map(|(scene, _)| steps(definition, scene, engines)).sum();
     let style = ProgressStyle::with_template("{prefix} {wide_bar} {pos}/{len} {msg} {elapsed}");
     let style = style.expect("the template is well formed");
     ProgressBar::new((steps * setting.threads.len()) as u64).with_style(style)
@@ -98,11 +91,7 @@ fn progress(
 
 /// Builds and traces on one number of threads.
 fn steps(definition: &Definition, scene: &SceneDefinition, engines: &[Present]) -> usize {
-    let taking_part = engines
-        .iter()
-        .filter(|(engine, _)| !scene.exclude.contains(&engine.name));
+    let taking_part = engines.iter().filter(|(engine, _)| !scene.exclude.contains(&engine.name));
     let traces = definition.trace_passes * scene.rays.len();
-    taking_part
-        .map(|(engine, _)| definition.build_passes + 1 + traces * engine.modes.len())
-        .sum()
+    taking_part.map(|(engine, _)| definition.build_passes + 1 + traces * engine.modes.len()).sum()
 }

@@ -31,10 +31,7 @@ pub(crate) fn run(
 
 fn measure(count: usize, threads: usize) -> Result<Size> {
     let mesh = kdray_mesh::generate::showcase(count).mesh()?;
-    let options = BuildOptions {
-        threads,
-        ..BuildOptions::default()
-    };
+    let options = BuildOptions { threads, ..BuildOptions::default() };
     let (tree, memory) = memory::measure(|| Tree::build(&mesh, &options));
     drop(tree?);
     let mut seconds = Vec::new();
@@ -45,10 +42,5 @@ fn measure(count: usize, threads: usize) -> Result<Size> {
         drop(tree);
     }
     let seconds = Spread::of_seconds(&seconds).expect("there is at least one pass");
-    Ok(Size {
-        triangles: mesh.triangles().len(),
-        threads,
-        seconds,
-        memory,
-    })
+    Ok(Size { triangles: mesh.triangles().len(), threads, seconds, memory })
 }

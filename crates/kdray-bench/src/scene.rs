@@ -24,9 +24,9 @@ pub(crate) type Present<'a> = (&'a EngineDefinition, Box<dyn Engine>);
 /// The mesh of a scene; files are looked for in the folder `meshes`.
 pub(crate) fn load(source: &Source, meshes: Option<&Path>) -> Result<Mesh> {
     match source {
-        Source::Showcase(triangles) => kdray_mesh::generate::showcase(*triangles)
-            .mesh()
-            .context("the generated scene"),
+        Source::Showcase(triangles) => {
+            kdray_mesh::generate::showcase(*triangles).mesh().context("the generated scene")
+        }
         Source::File(file) => {
             let folder = meshes.with_context(|| format!("{} needs --meshes", file.display()))?;
             let path = folder.join(file);
@@ -39,6 +39,7 @@ pub(crate) fn load(source: &Source, meshes: Option<&Path>) -> Result<Mesh> {
 /// Measures one scene after another under one plan.
 pub(crate) struct Bench<'a> {
     pub(crate) definition: &'a Definition,
+    /// Ascending.
     pub(crate) threads: &'a [usize],
     pub(crate) progress: &'a ProgressBar,
 }
@@ -46,8 +47,10 @@ pub(crate) struct Bench<'a> {
 /// An engine's builders, one per thread count, its last index and its times.
 struct Contestant<'a> {
     definition: &'a EngineDefinition,
+    engine: &'a dyn Engine,
     builders: Vec<Box<dyn Builder>>,
     memory: Vec<Memory>,
+    /// Wall and CPU seconds, by builder and pass.
     builds: Vec<Vec<(f64, f64)>>,
     index: Option<Box<dyn Index>>,
 }
@@ -65,6 +68,7 @@ struct Heat {
     mode: Mode,
     threads: usize,
     seconds: Vec<f64>,
+    cpu_seconds: Vec<f64>,
     differ: Option<f64>,
 }
 
@@ -76,12 +80,7 @@ impl Bench<'_> {
         mesh: &Mesh,
         engines: &[Present],
     ) -> Result<SceneRecord> {
-        let taking_part = |engine: &&Present| !scene.exclude.contains(&engine.0.name);
-        let mut contestants = engines
-            .iter()
-            .filter(taking_part)
-            .map(|(definition, engine)| self.contestant(definition, engine.as_ref()))
-            .collect::<Result<Vec<_>>>()?;
+        let mut contestants = self.contestants(scene, engines)?;
         self.build_all(&mut contestants, mesh)?;
         let mut record = SceneRecord {
             name: scene.name.clone(),
@@ -95,29 +94,29 @@ impl Bench<'_> {
         for set in &scene.rays {
             let rays = self.rays(*set, &maker, &contestants);
             let hits = rays.truth.as_ref().map(Answers::hits);
-            record.sets.push(SetRecord {
-                set: *set,
-                rays: rays.rays.len(),
-                hits,
-            });
+            record.sets.push(SetRecord { set: *set, rays: rays.rays.len(), hits });
             record.traces.extend(self.trace_all(&contestants, &rays));
         }
         Ok(record)
     }
 
-    fn contestant<'a>(
+    /// Builders are made for all engines with few threads before any with more: Embree gives a
+    /// device as many threads as the largest device of that moment has.
+    fn contestants<'a>(
         &self,
-        definition: &'a EngineDefinition,
-        engine: &dyn Engine,
-    ) -> Result<Contestant<'a>> {
-        let builders: Result<Vec<_>> = self.threads.iter().map(|n| engine.builder(*n)).collect();
-        Ok(Contestant {
-            definition,
-            builders: builders.with_context(|| definition.name.clone())?,
-            memory: Vec::new(),
-            builds: vec![Vec::new(); self.threads.len()],
-            index: None,
-        })
+        scene: &SceneDefinition,
+        engines: &'a [Present],
+    ) -> Result<Vec<Contestant<'a>>> {
+        let taking_part = engines.iter().filter(|(e, _)| !scene.exclude.contains(&e.name));
+        let mut contestants: Vec<_> = taking_part
+            .map(|(definition, engine)| Contestant::new(definition, &**engine))
+            .collect();
+        for threads in self.threads {
+            for contestant in &mut contestants {
+                contestant.get_ready(*threads)?;
+            }
+        }
+        Ok(contestants)
     }
 
     /// The first pass counts memory and warms up; the others are timed.
@@ -154,10 +153,7 @@ impl Bench<'_> {
         self.progress.set_message(format!("{} rays", set.name()));
         let rays = maker.rays(set);
         let is_baseline = |c: &&Contestant| c.definition.name == self.definition.baseline;
-        let baseline = contestants
-            .iter()
-            .find(is_baseline)
-            .and_then(|c| c.index.as_deref());
+        let baseline = contestants.iter().find(is_baseline).and_then(|c| c.index.as_deref());
         let truth = baseline.map(|index| {
             let mut answers = Answers::new(set.query(), rays.len());
             trace(index, Mode::Single, &rays, 1, &mut answers);
@@ -177,8 +173,7 @@ impl Bench<'_> {
                     && contestant.definition.takes_part(pass)
                 {
                     let name = &contestant.definition.name;
-                    self.progress
-                        .set_message(format!("{name} traces {}", rays.set.name()));
+                    self.progress.set_message(format!("{name} traces {}", rays.set.name()));
                     heat.trace(index, rays, &mut answers);
                 }
             }
@@ -197,6 +192,7 @@ impl Bench<'_> {
                     mode: *mode,
                     threads: *threads,
                     seconds: Vec::new(),
+                    cpu_seconds: Vec::new(),
                     differ: None,
                 }));
             }
@@ -212,7 +208,19 @@ impl EngineDefinition {
     }
 }
 
-impl Contestant<'_> {
+impl<'a> Contestant<'a> {
+    fn new(definition: &'a EngineDefinition, engine: &'a dyn Engine) -> Self {
+        let (builders, memory, builds) = (Vec::new(), Vec::new(), Vec::new());
+        Self { definition, engine, builders, memory, builds, index: None }
+    }
+
+    fn get_ready(&mut self, threads: usize) -> Result<()> {
+        let builder = self.engine.builder(threads);
+        self.builders.push(builder.with_context(|| self.definition.name.clone())?);
+        self.builds.push(Vec::new());
+        Ok(())
+    }
+
     fn count(&mut self, which: usize, mesh: &Mesh) -> Result<()> {
         self.index = None;
         let (index, own) = memory::measure(|| self.builders[which].build(mesh));
@@ -252,7 +260,9 @@ impl Contestant<'_> {
 
 impl Heat {
     fn trace(&mut self, index: &dyn Index, rays: &Rays, answers: &mut Answers) {
+        let cpu = ProcessTime::now();
         let time = trace(index, self.mode, &rays.rays, self.threads, answers);
+        self.cpu_seconds.push(cpu.elapsed().as_secs_f64() / self.threads as f64);
         self.seconds.push(time.as_secs_f64());
         if self.differ.is_none() {
             self.differ = rays.truth.as_ref().map(|truth| truth.disagreement(answers));
@@ -260,12 +270,14 @@ impl Heat {
     }
 
     fn record(&self, engine: &str, rays: &Rays) -> Option<TraceRecord> {
+        let millions = 1e-6 * rays.rays.len() as f64;
         Some(TraceRecord {
             engine: engine.to_owned(),
             mode: self.mode,
             threads: self.threads,
             set: rays.set,
-            mrays: Spread::of_rates(1e-6 * rays.rays.len() as f64, &self.seconds)?,
+            mrays: Spread::of_rates(millions, &self.seconds)?,
+            cpu_mrays: Spread::of_rates(millions, &self.cpu_seconds)?,
             differ: self.differ,
         })
     }
@@ -277,12 +289,7 @@ fn reference(mesh: &Mesh) -> Result<impl Fn(&[Ray]) -> Vec<Hit>> {
     Ok(move |rays: &[Ray]| {
         let mut hits = vec![None; rays.len()];
         tracer.closest_hits(rays, &mut hits);
-        let hit = |hit: kdray::Hit| Hit {
-            t: hit.t,
-            triangle: hit.triangle,
-        };
-        hits.into_iter()
-            .map(|found| found.map_or(Hit::MISS, hit))
-            .collect()
+        let hit = |hit: kdray::Hit| Hit { t: hit.t, triangle: hit.triangle };
+        hits.into_iter().map(|found| found.map_or(Hit::MISS, hit)).collect()
     })
 }

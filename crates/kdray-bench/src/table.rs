@@ -2,29 +2,52 @@
 //!
 //! Every engine that ran has a row in every table, whoever wins.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use crate::definition::{Mode, RaySet};
 use crate::record::{BuildRecord, Comparison, Measured, Record, SceneRecord, Size, TraceRecord};
 
+/// The seconds that tables of engines are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Clock {
+    Wall,
+    /// CPU seconds; for rays, shared out among the threads.
+    Cpu,
+}
+
+impl Clock {
+    fn seconds(self, build: &BuildRecord) -> f64 {
+        match self {
+            Clock::Wall => build.seconds.best,
+            Clock::Cpu => build.cpu_seconds,
+        }
+    }
+
+    fn mrays(self, trace: &TraceRecord) -> f64 {
+        match self {
+            Clock::Wall => trace.mrays.best,
+            Clock::Cpu => trace.cpu_mrays.best,
+        }
+    }
+
+    fn word(self) -> &'static str {
+        match self {
+            Clock::Wall => "wall",
+            Clock::Cpu => "CPU",
+        }
+    }
+}
+
 /// The tables of a record, with a line on where it was made.
-pub(crate) fn markdown(record: &Record) -> String {
-    let machine = &record.machine;
-    let versions: Vec<_> = record
-        .versions
-        .iter()
-        .map(|(name, v)| format!("{name} {v}"))
-        .collect();
-    let mut text = format!(
-        "{}, {} ({} cores, {}); {}.\n",
-        record.date,
-        machine.cpu,
-        machine.cores,
-        machine.simd.join(" "),
-        versions.join(", "),
-    );
+pub(crate) fn markdown(record: &Record, clock: Clock) -> String {
+    let Record { date, machine, .. } = record;
+    let named = record.versions.iter().map(|(name, version)| format!("{name} {version}"));
+    let versions = named.collect::<Vec<_>>().join(", ");
+    let (cores, simd) = (machine.cores, machine.simd.join(" "));
+    let mut text = format!("{date}, {} ({cores} cores, {simd}); {versions}.\n", machine.cpu);
     match &record.measured {
-        Measured::Engines(comparison) => engines(&mut text, comparison),
+        Measured::Engines(comparison) => engines(&mut text, comparison, clock),
         Measured::Scaling(sizes) => scaling(&mut text, sizes),
     }
     text
@@ -54,29 +77,24 @@ fn scaling(text: &mut String, sizes: &[Size]) {
     }
 }
 
-fn engines(text: &mut String, comparison: &Comparison) {
+fn engines(text: &mut String, comparison: &Comparison, clock: Clock) {
     let baseline = &comparison.baseline;
     let _ = writeln!(
         text,
-        "\nBuild: best wall seconds. MB: the finished index, and the most during the build. Rays: best pass, \
-         millions a second.\nIn brackets the ratio to {baseline}, one ray at a time: below 1 is better for \
-         seconds and MB, above 1 for rays. Differ: the\nlargest share of a ray set on which the hits are not \
-         {baseline}'s."
+        "\nBuild: best {clock} seconds. MB: the finished index, and the most during the build. \
+         Rays: best pass, millions per {clock}\nsecond. In brackets the ratio to {baseline}, one \
+         ray at a time: below 1 is better for seconds and MB, above 1 for rays.\nDiffer: the \
+         largest share of a ray set on which the hits are not {baseline}'s.",
+        clock = clock.word(),
     );
     for missing in &comparison.missing {
         let _ = writeln!(text, "\nLeft out: {missing}.");
     }
     for scene in &comparison.scenes {
-        let mut threads: Vec<_> = scene.builds.iter().map(|build| build.threads).collect();
-        threads.sort_unstable();
-        threads.dedup();
+        let threads: BTreeSet<_> = scene.builds.iter().map(|build| build.threads).collect();
         for threads in threads {
-            Table {
-                scene,
-                baseline,
-                threads,
-            }
-            .write(text);
+            let table = Table { scene, baseline, threads, clock };
+            table.write(text);
         }
     }
 }
@@ -86,51 +104,37 @@ struct Table<'a> {
     scene: &'a SceneRecord,
     baseline: &'a str,
     threads: usize,
+    clock: Clock,
 }
 
 impl Table<'_> {
     fn write(&self, text: &mut String) {
-        let SceneRecord {
-            name,
-            triangles,
-            sets,
-            ..
-        } = self.scene;
-        let plural = if self.threads == 1 { "" } else { "s" };
-        let count = grouped(*triangles);
-        let _ = writeln!(
-            text,
-            "\n**{name}**, {count} triangles, {} thread{plural}\n",
-            self.threads
-        );
+        let (scene, threads) = (self.scene, self.threads);
+        let plural = if threads == 1 { "" } else { "s" };
+        let count = grouped(scene.triangles);
+        let _ =
+            writeln!(text, "\n**{}**, {count} triangles, {threads} thread{plural}\n", scene.name);
         text.push_str("| engine | build s | MB | peak MB |");
-        for set in sets {
+        for set in &scene.sets {
             let _ = write!(text, " {} |", set.set.name());
         }
-        text.push_str(" differ |\n|---|--:|--:|--:|");
-        text.push_str(&"--:|".repeat(sets.len()));
-        text.push_str("--:|\n");
-        for build in self
-            .scene
-            .builds
-            .iter()
-            .filter(|build| build.threads == self.threads)
-        {
+        let rule = "--:|".repeat(scene.sets.len());
+        let _ = writeln!(text, " differ |\n|---|--:|--:|--:|{rule}--:|");
+        for build in self.builds() {
             for mode in self.modes(&build.engine) {
                 self.row(text, build, mode);
             }
         }
     }
 
+    fn builds(&self) -> impl Iterator<Item = &BuildRecord> {
+        self.scene.builds.iter().filter(|build| build.threads == self.threads)
+    }
+
     /// The modes of an engine in the order they were traced.
     fn modes(&self, engine: &str) -> Vec<Mode> {
         let mut modes = Vec::new();
-        for trace in self
-            .scene
-            .traces
-            .iter()
-            .filter(|trace| trace.engine == engine)
-        {
+        for trace in self.scene.traces.iter().filter(|trace| trace.engine == engine) {
             if !modes.contains(&trace.mode) {
                 modes.push(trace.mode);
             }
@@ -140,21 +144,17 @@ impl Table<'_> {
 
     /// Modes after the first share the build, so only the first row repeats it.
     fn row(&self, text: &mut String, build: &BuildRecord, mode: Mode) {
-        let first = self.modes(&build.engine).first() == Some(&mode);
         let _ = write!(text, "| {}{} |", build.engine, suffix(mode));
-        let base = self
-            .scene
-            .builds
-            .iter()
-            .find(|b| b.engine == self.baseline && b.threads == self.threads);
-        let figures: [fn(&BuildRecord) -> f64; 3] = [
-            |b| b.seconds.best,
-            |b| megabytes(b.final_bytes),
-            |b| megabytes(b.peak_bytes),
+        let base = self.builds().find(|base| base.engine == self.baseline);
+        let figures: [fn(Clock, &BuildRecord) -> f64; 3] = [
+            Clock::seconds,
+            |_, build| megabytes(build.final_bytes),
+            |_, build| megabytes(build.peak_bytes),
         ];
+        let first = self.modes(&build.engine).first() == Some(&mode);
         for figure in figures {
             match first {
-                true => cell(text, figure(build), base.map(figure)),
+                true => cell(text, figure(self.clock, build), base.map(|b| figure(self.clock, b))),
                 false => text.push_str("  |"),
             }
         }
@@ -167,18 +167,15 @@ impl Table<'_> {
             match self.trace(engine, mode, set.set) {
                 Some(trace) => {
                     let base = self.trace(self.baseline, Mode::Single, set.set);
-                    cell(text, trace.mrays.best, base.map(|base| base.mrays.best));
+                    let rate = self.clock.mrays(trace);
+                    cell(text, rate, base.map(|base| self.clock.mrays(base)));
                     differ.extend(trace.differ);
                 }
                 None => text.push_str(" - |"),
             }
         }
         let worst = differ.into_iter().max_by(f64::total_cmp);
-        let _ = writeln!(
-            text,
-            " {} |",
-            worst.map_or("-".to_owned(), |share| format!("{share:.1e}"))
-        );
+        let _ = writeln!(text, " {} |", worst.map_or("-".to_owned(), share));
     }
 
     fn trace(&self, engine: &str, mode: Mode, set: RaySet) -> Option<&TraceRecord> {
@@ -199,6 +196,11 @@ fn suffix(mode: Mode) -> &'static str {
 fn cell(text: &mut String, value: f64, base: Option<f64>) {
     let ratio = base.map_or(String::new(), |base| format!(" ({:.2})", value / base));
     let _ = write!(text, " {}{ratio} |", number(value));
+}
+
+/// A share of rays, which may be one in a million.
+fn share(share: f64) -> String {
+    if share == 0.0 { "0".to_owned() } else { format!("{share:.1e}") }
 }
 
 /// Three significant digits.
@@ -228,10 +230,22 @@ fn grouped(count: usize) -> String {
 mod tests {
     use super::*;
 
+    fn golden(clock: Clock) -> String {
+        let record = include_str!("../tests/record.json");
+        markdown(&serde_json::from_str(record).expect("a record"), clock)
+    }
+
     #[test]
     fn the_table_is_the_golden_one() {
-        let record = serde_json::from_str(include_str!("../tests/record.json")).expect("a record");
-        assert_eq!(markdown(&record), include_str!("../tests/record.md"));
+        assert_eq!(golden(Clock::Wall), include_str!("../tests/record.md"));
+    }
+
+    #[test]
+    fn the_cpu_table_takes_the_other_clock() {
+        let text = golden(Clock::Cpu);
+        assert!(text.contains("best CPU seconds"));
+        let row = "| kdray | 0.290 (1.53) | 3.00 (0.50) | 36.0 (4.00) | 9.50 (0.50) |";
+        assert!(text.contains(row), "{text}");
     }
 
     #[test]

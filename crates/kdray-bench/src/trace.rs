@@ -73,12 +73,12 @@ pub(crate) fn trace(
     answers: &mut Answers,
 ) -> Duration {
     match answers {
-        Answers::Closest(hits) => in_parallel(rays, hits, threads, |rays, hits| {
-            index.closest(mode, rays, hits)
-        }),
-        Answers::Any(occluded) => in_parallel(rays, occluded, threads, |rays, occluded| {
-            index.any(mode, rays, occluded)
-        }),
+        Answers::Closest(hits) => {
+            in_parallel(rays, hits, threads, |rays, hits| index.closest(mode, rays, hits))
+        }
+        Answers::Any(occluded) => {
+            in_parallel(rays, occluded, threads, |rays, occluded| index.any(mode, rays, occluded))
+        }
     }
 }
 
@@ -117,10 +117,7 @@ mod tests {
         let b = Answers::Closest(vec![hit(1.000_01), hit(1.001), Hit::MISS, Hit::MISS]);
         assert_eq!(a.disagreement(&b), 0.5);
         assert_eq!(a.disagreement(&a), 0.0);
-        let (c, d) = (
-            Answers::Any(vec![true, false]),
-            Answers::Any(vec![true, true]),
-        );
+        let (c, d) = (Answers::Any(vec![true, false]), Answers::Any(vec![true, true]));
         assert_eq!(c.disagreement(&d), 0.5);
     }
 
@@ -131,16 +128,9 @@ mod tests {
         for threads in [1, 2, 5] {
             let mut answers = vec![0.0; rays.len()];
             in_parallel(&rays, &mut answers, threads, |rays, answers| {
-                rays.iter()
-                    .zip(answers)
-                    .for_each(|(ray, answer)| *answer = ray.origin[0]);
+                rays.iter().zip(answers).for_each(|(ray, answer)| *answer = ray.origin[0]);
             });
-            assert!(
-                answers
-                    .iter()
-                    .enumerate()
-                    .all(|(i, answer)| *answer == i as f32)
-            );
+            assert!(answers.iter().enumerate().all(|(i, answer)| *answer == i as f32));
         }
     }
 }

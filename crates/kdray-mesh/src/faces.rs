@@ -60,7 +60,11 @@ impl Faces {
             }
         }
         note(notes, flat, "of fewer than three corners left out");
-        note(notes, tangled, "crossing themselves, or too intricate: some of their triangles overlap");
+        note(
+            notes,
+            tangled,
+            "crossing themselves, or too intricate: some of their triangles overlap",
+        );
         Ok(triangles)
     }
 
@@ -68,14 +72,20 @@ impl Faces {
         match corners.iter().find(|&&index| index as usize >= vertices) {
             None => Ok(()),
             Some(&index) => {
-                let reason = Reason::IndexOutOfRange { index: index.into(), vertices };
+                let reason = Reason::IndexOutOfRange {
+                    index: index.into(),
+                    vertices,
+                };
                 Err(LoadError::new(self.place(face), reason))
             }
         }
     }
 
     fn place(&self, face: usize) -> Place {
-        let place = self.lines.get(face).map_or(Place::whole(), |&line| Place::line(line));
+        let place = self
+            .lines
+            .get(face)
+            .map_or(Place::whole(), |&line| Place::line(line));
         place.at_item(format!("face {face}"))
     }
 }

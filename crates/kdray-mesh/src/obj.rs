@@ -11,7 +11,10 @@ use crate::error::{LoadError, Place, Reason};
 use crate::faces::Faces;
 use crate::text::{Dialect, Scanner, coordinate, quoted};
 
-const DIALECT: Dialect = Dialect { comment: Some(b'#'), continuation: true };
+const DIALECT: Dialect = Dialect {
+    comment: Some(b'#'),
+    continuation: true,
+};
 
 /// Reads an OBJ file.
 pub(crate) fn read(bytes: &[u8]) -> Result<Loaded, LoadError> {
@@ -65,7 +68,10 @@ impl<'a> Obj<'a> {
     fn face(&mut self, line: usize) -> Result<(), LoadError> {
         while let Some(word) = self.scanner.word() {
             let corner = self.corner(word).map_err(|reason| {
-                LoadError::new(Place::line(line).at_item(format!("face {}", self.faces.len())), reason)
+                LoadError::new(
+                    Place::line(line).at_item(format!("face {}", self.faces.len())),
+                    reason,
+                )
             })?;
             self.faces.corner(corner);
         }
@@ -82,7 +88,11 @@ impl<'a> Obj<'a> {
             .and_then(|slot| slot.parse().ok())
             .ok_or_else(|| Reason::Malformed(format!("{} is not a corner", quoted(word))))?;
         let resolved = match index {
-            0 => return Err(Reason::Malformed("vertex index 0: OBJ counts from 1".into())),
+            0 => {
+                return Err(Reason::Malformed(
+                    "vertex index 0: OBJ counts from 1".into(),
+                ));
+            }
             1.. => index - 1,
             _ => index.saturating_add_unsigned(vertices as u64),
         };
@@ -96,7 +106,10 @@ impl<'a> Obj<'a> {
         }
         let mut loaded = Loaded::from_faces(self.positions, &self.faces)?;
         if self.free_form > 0 {
-            loaded.notes.push(format!("{} free-form curves and surfaces left out", self.free_form));
+            loaded.notes.push(format!(
+                "{} free-form curves and surfaces left out",
+                self.free_form
+            ));
         }
         Ok(loaded)
     }
@@ -105,10 +118,40 @@ impl<'a> Obj<'a> {
 /// Statements that say nothing about triangles, and extensions that begin with an odd sign.
 fn is_known(word: &[u8]) -> bool {
     const KNOWN: &[&[u8]] = &[
-        b"vt", b"vn", b"vp", b"p", b"l", b"o", b"g", b"s", b"mg", b"usemtl", b"mtllib", b"usemap",
-        b"maplib", b"cstype", b"deg", b"bmat", b"step", b"parm", b"trim", b"hole", b"scrv", b"sp",
-        b"end", b"con", b"bevel", b"c_interp", b"d_interp", b"lod", b"shadow_obj", b"trace_obj",
-        b"ctech", b"stech", b"call", b"csh",
+        b"vt",
+        b"vn",
+        b"vp",
+        b"p",
+        b"l",
+        b"o",
+        b"g",
+        b"s",
+        b"mg",
+        b"usemtl",
+        b"mtllib",
+        b"usemap",
+        b"maplib",
+        b"cstype",
+        b"deg",
+        b"bmat",
+        b"step",
+        b"parm",
+        b"trim",
+        b"hole",
+        b"scrv",
+        b"sp",
+        b"end",
+        b"con",
+        b"bevel",
+        b"c_interp",
+        b"d_interp",
+        b"lod",
+        b"shadow_obj",
+        b"trace_obj",
+        b"ctech",
+        b"stech",
+        b"call",
+        b"csh",
     ];
     KNOWN.contains(&word)
 }
@@ -130,7 +173,9 @@ mod tests {
     #[test]
     fn a_bad_corner_is_named_as_the_file_has_it() {
         let text = format!("{VERTICES}f 1 2 -4\n");
-        let message = read(text.as_bytes()).expect_err("-4 of 3 vertices").to_string();
+        let message = read(text.as_bytes())
+            .expect_err("-4 of 3 vertices")
+            .to_string();
         assert_eq!(
             message,
             "line 4, face 0: vertex index -4 is out of range: there are 3 vertices"

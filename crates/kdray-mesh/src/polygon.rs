@@ -2,17 +2,18 @@
 //!
 //! A polygon is seen along the axis on which its normal is greatest. Convex ones become a fan; the
 //! others lose one ear after the other. n corners always give n - 2 triangles, and every edge of the
-//! polygon stays an edge of one of them, collinear and repeated corners included: neighbours
-//! that share the edge still meet there, so closed meshes stay closed. Published ear clippers
-//! drop such corners. Signs of areas are exact (Shewchuk's predicates).
+//! polygon stays an edge of one of them, collinear and repeated corners included: neighbours that
+//! share the edge still meet there, so closed meshes stay closed. Signs of areas are exact
+//! (Shewchuk's predicates).
 //!
 //! Polygons that cross themselves have no such triangles without overlap. Theirs overlap, but still
-//! cover every point that the polygon winds around.
+//! cover every point that the polygon winds around. An ear clipper of our own, because `earcut` 0.4
+//! leaves out parts of such polygons, edges included, and its work on a hostile one has no bound.
 
 use robust::{Coord, orient2d};
 
-/// Corner visits that one file may spend on ears: some seconds, and more than an honest file needs.
-const WORK: u64 = 1 << 30;
+/// Corner visits that one file may spend on ears: a few seconds. A polygon of 20,000 corners still fits.
+const WORK: u64 = 1 << 29;
 
 /// Makes triangles of polygons, with memory that is reused from one to the next.
 pub(crate) struct Triangulator {
@@ -36,7 +37,9 @@ impl Default for Triangulator {
 }
 
 impl Triangulator {
-    /// Adds the triangles of a polygon of four corners or more; false when some of them overlap.
+    /// Adds the triangles of a polygon of four corners or more.
+    ///
+    /// False when it ran out of ears or of work, and the rest became a fan that overlaps itself.
     pub(crate) fn triangulate(
         &mut self,
         corners: &[u32],
@@ -56,7 +59,13 @@ impl Triangulator {
     fn project(&mut self, corners: &[u32], positions: &[[f64; 3]]) -> bool {
         let normal = newell_normal(corners, positions);
         let magnitude = normal.map(f64::abs);
-        let axis = (0..3).fold(0, |best, k| if magnitude[k] > magnitude[best] { k } else { best });
+        let axis = (0..3).fold(0, |best, k| {
+            if magnitude[k] > magnitude[best] {
+                k
+            } else {
+                best
+            }
+        });
         if !(magnitude[axis] > 0.0 && normal.iter().all(|n| n.is_finite())) {
             return false;
         }
@@ -66,7 +75,10 @@ impl Triangulator {
         }
         let point = |&corner: &u32| {
             let position = positions[corner as usize];
-            Coord { x: position[across], y: position[up] }
+            Coord {
+                x: position[across],
+                y: position[up],
+            }
         };
         self.points.clear();
         self.points.extend(corners.iter().map(point));
@@ -145,7 +157,9 @@ impl Triangulator {
     /// Whether the point is in the triangle or on its border, but is not one of its corners.
     fn is_inside(&self, point: usize, triangle: [usize; 3]) -> bool {
         let [a, b, c] = triangle;
-        let is_corner = triangle.iter().any(|&k| self.points[k] == self.points[point]);
+        let is_corner = triangle
+            .iter()
+            .any(|&k| self.points[k] == self.points[point]);
         !is_corner
             && self.turn(a, b, point) >= 0.0
             && self.turn(b, c, point) >= 0.0
@@ -156,9 +170,11 @@ impl Triangulator {
     fn link(&mut self) {
         let count = self.points.len();
         self.next.clear();
-        self.next.extend((0..count).map(|corner| (corner + 1) % count));
+        self.next
+            .extend((0..count).map(|corner| (corner + 1) % count));
         self.previous.clear();
-        self.previous.extend((0..count).map(|corner| (corner + count - 1) % count));
+        self.previous
+            .extend((0..count).map(|corner| (corner + count - 1) % count));
         self.reflex.clear();
         self.reflex.resize(count, false);
         (0..count).for_each(|corner| self.update_reflex(corner));
@@ -178,7 +194,10 @@ impl Triangulator {
 
     fn edge(&self, from: usize, to: usize) -> Coord<f64> {
         let (from, to) = (self.points[from], self.points[to]);
-        Coord { x: to.x - from.x, y: to.y - from.y }
+        Coord {
+            x: to.x - from.x,
+            y: to.y - from.y,
+        }
     }
 
     /// Twice the area of a triangle, positive when it turns left; its sign is exact.
@@ -209,3 +228,6 @@ fn newell_normal(corners: &[u32], positions: &[[f64; 3]]) -> [f64; 3] {
     }
     normal
 }
+
+#[cfg(test)]
+mod tests;

@@ -20,7 +20,11 @@ const RECORD: usize = 50;
 
 /// Reads an STL file.
 pub(crate) fn read(bytes: &[u8]) -> Result<Loaded, LoadError> {
-    if !looks_binary(bytes) && looks_ascii(bytes) { read_ascii(bytes) } else { read_binary(bytes) }
+    if !looks_binary(bytes) && looks_ascii(bytes) {
+        read_ascii(bytes)
+    } else {
+        read_binary(bytes)
+    }
 }
 
 /// Whether the length is that of a binary file with its count.
@@ -46,14 +50,20 @@ fn read_binary(bytes: &[u8]) -> Result<Loaded, LoadError> {
         return Err(LoadError::truncated(Place::whole(), reason));
     };
     let records = &bytes[HEADER..];
-    if (records.len() / RECORD) as u64 <  count {
-        let reason = format!("{count} triangles are announced, {} are here", records.len() / RECORD);
+    let here = (records.len() / RECORD) as u64;
+    if here < count {
+        let reason = format!("{count} triangles are announced, {here} are here");
         return Err(LoadError::truncated(Place::byte(bytes.len()), reason));
     }
     let mut welded = Welded::default();
     for record in records.chunks_exact(RECORD).take(count as usize) {
         let value = |at: usize| {
-            f64::from(f32::from_le_bytes([record[at], record[at + 1], record[at + 2], record[at + 3]]))
+            f64::from(f32::from_le_bytes([
+                record[at],
+                record[at + 1],
+                record[at + 2],
+                record[at + 3],
+            ]))
         };
         for at in [12, 24, 36] {
             welded.corner([value(at), value(at + 4), value(at + 8)]);
@@ -63,7 +73,9 @@ fn read_binary(bytes: &[u8]) -> Result<Loaded, LoadError> {
     let mut loaded = welded.finish()?;
     let surplus = records.len() - count as usize * RECORD;
     if surplus > 0 {
-        loaded.notes.push(format!("{surplus} bytes after the last triangle left out"));
+        loaded
+            .notes
+            .push(format!("{surplus} bytes after the last triangle left out"));
     }
     Ok(loaded)
 }
@@ -96,7 +108,9 @@ fn read_ascii(bytes: &[u8]) -> Result<Loaded, LoadError> {
         }
     }
     if loop_line.is_some() {
-        let place = scanner.place().at_item(format!("facet {}", welded.faces.len()));
+        let place = scanner
+            .place()
+            .at_item(format!("facet {}", welded.faces.len()));
         return Err(LoadError::truncated(place, "the facet has no endloop"));
     }
     welded.finish()

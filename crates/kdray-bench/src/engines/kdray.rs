@@ -25,10 +25,7 @@ impl Kdray {
 
 impl Engine for Kdray {
     fn builder(&self, threads: usize) -> Result<Box<dyn Builder>> {
-        Ok(Box::new(TreeBuilder {
-            cost: self.cost,
-            threads,
-        }))
+        Ok(Box::new(TreeBuilder { cost: self.cost, threads }))
     }
 }
 
@@ -39,11 +36,8 @@ struct TreeBuilder {
 
 impl Builder for TreeBuilder {
     fn build(&self, mesh: &Mesh) -> Result<Box<dyn Index>> {
-        let options = BuildOptions {
-            cost: self.cost,
-            threads: self.threads,
-            ..BuildOptions::default()
-        };
+        let options =
+            BuildOptions { cost: self.cost, threads: self.threads, ..BuildOptions::default() };
         let tree = Tree::build(mesh, &options)?;
         Ok(Box::new(Traced(Tracer::new(mesh, &tree))))
     }
@@ -55,10 +49,7 @@ impl Index for Traced {
     fn closest(&self, _mode: Mode, rays: &[Ray], hits: &mut [Hit]) {
         for (ray, answer) in rays.iter().zip(hits) {
             *answer = match self.0.closest_hit(ray) {
-                Some(hit) => Hit {
-                    t: hit.t,
-                    triangle: hit.triangle,
-                },
+                Some(hit) => Hit { t: hit.t, triangle: hit.triangle },
                 None => Hit::MISS,
             };
         }

@@ -27,10 +27,7 @@ struct Threads(usize);
 
 impl Builder for Threads {
     fn build(&self, mesh: &Mesh) -> Result<Box<dyn Index>> {
-        anyhow::ensure!(
-            !mesh.triangles().is_empty(),
-            "kdtree-ray cannot build an empty scene"
-        );
+        anyhow::ensure!(!mesh.triangles().is_empty(), "kdtree-ray cannot build an empty scene");
         let triangles: Vec<_> = triangles(mesh).into_iter().map(Shape).collect();
         // The crate makes its own thread pool, whose size only this variable sets.
         // SAFETY: builds run while no other thread does: tracing threads are joined, and the
@@ -58,16 +55,11 @@ struct Traced {
 impl Traced {
     /// Distances to the triangles of the candidate list that the ray hits.
     fn crossings(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
-        let candidates = self
-            .tree
-            .intersect(&vector(ray.origin), &vector(ray.direction));
+        let candidates = self.tree.intersect(&vector(ray.origin), &vector(ray.direction));
         let ray = obvhs_ray(ray);
         let hit = move |index: usize| {
             let t = self.triangles[index].0.intersect(&ray);
-            t.is_finite().then_some(Hit {
-                t,
-                triangle: index as u32,
-            })
+            t.is_finite().then_some(Hit { t, triangle: index as u32 })
         };
         candidates.into_iter().filter_map(hit)
     }

@@ -31,10 +31,7 @@ impl Obvhs {
 impl Engine for Obvhs {
     fn builder(&self, threads: usize) -> Result<Box<dyn Builder>> {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
-        Ok(Box::new(PoolBuilder {
-            tree: self.tree,
-            pool,
-        }))
+        Ok(Box::new(PoolBuilder { tree: self.tree, pool }))
     }
 }
 
@@ -83,10 +80,7 @@ pub(super) fn obvhs_ray(ray: &Ray) -> obvhs::ray::Ray {
 }
 
 fn in_order(triangles: &[Triangle], order: &[u32]) -> Vec<Triangle> {
-    order
-        .iter()
-        .map(|&index| triangles[index as usize])
-        .collect()
+    order.iter().map(|&index| triangles[index as usize]).collect()
 }
 
 struct Traced<T> {
@@ -95,8 +89,7 @@ struct Traced<T> {
     triangles: Vec<Triangle>,
 }
 
-/// What the two trees of obvhs offer alike. Both are asked for rays with an infinite `tmax`
-/// only in closest-hit queries, where the crate's own report of a hit is valid.
+/// What the two trees of obvhs offer alike.
 trait Traverse: Send + Sync {
     fn closest(
         &self,
@@ -147,10 +140,7 @@ impl<T: Traverse> Index for Traced<T> {
             let test = |ray: &obvhs::ray::Ray, slot: usize| self.triangles[slot].intersect(ray);
             let found = self.bvh.closest(obvhs_ray(ray), &mut hit, test);
             *answer = match found {
-                true => Hit {
-                    t: hit.t,
-                    triangle: self.bvh.triangle(hit.primitive_id),
-                },
+                true => Hit { t: hit.t, triangle: self.bvh.triangle(hit.primitive_id) },
                 false => Hit::MISS,
             };
         }

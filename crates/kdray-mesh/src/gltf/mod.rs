@@ -39,7 +39,10 @@ pub(crate) fn read(bytes: &[u8], external: External) -> Result<Loaded, LoadError
 
 fn parse(json: &[u8]) -> Result<Root, LoadError> {
     let root: Root = serde_json::from_slice(json).map_err(|error| {
-        LoadError::malformed(Place::line(error.line()), format!("the JSON of the document: {error}"))
+        LoadError::malformed(
+            Place::line(error.line()),
+            format!("the JSON of the document: {error}"),
+        )
     })?;
     if root.asset.version.starts_with("2.") {
         return Ok(root);
@@ -64,7 +67,10 @@ fn check_extensions(root: &Root) -> Result<(), LoadError> {
         None => Ok(()),
         Some(name) => {
             let place = Place::item("extensionsRequired");
-            Err(LoadError::unsupported(place, format!("the extension {name}")))
+            Err(LoadError::unsupported(
+                place,
+                format!("the extension {name}"),
+            ))
         }
     }
 }

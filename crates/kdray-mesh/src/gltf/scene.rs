@@ -13,7 +13,11 @@ use crate::loaded::check_vertex_count;
 /// The triangles of the default scene; without a scene, of all nodes; without nodes, of all meshes.
 pub(super) fn flatten(root: &Root, buffers: &Buffers) -> Result<Loaded, LoadError> {
     let accessors = Accessors { root, buffers };
-    let mut flat = Flat { accessors, loaded: Loaded::default(), left_out: LeftOut::default() };
+    let mut flat = Flat {
+        accessors,
+        loaded: Loaded::default(),
+        left_out: LeftOut::default(),
+    };
     check_transforms(root)?;
     if root.nodes.is_empty() {
         for mesh in 0..root.meshes.len() {
@@ -39,9 +43,10 @@ fn root_nodes(root: &Root) -> Result<Vec<usize>, LoadError> {
     let index = root.scene.unwrap_or(0);
     match root.scenes.get(index) {
         Some(scene) => Ok(scene.nodes.clone()),
-        None if root.scene.is_some() => {
-            Err(LoadError::malformed(Place::item(format!("scene {index}")), "there is no such scene"))
-        }
+        None if root.scene.is_some() => Err(LoadError::malformed(
+            Place::item(format!("scene {index}")),
+            "there is no such scene",
+        )),
         None => {
             let mut is_child = vec![false; root.nodes.len()];
             for &child in root.nodes.iter().flat_map(|node| &node.children) {
@@ -49,7 +54,9 @@ fn root_nodes(root: &Root) -> Result<Vec<usize>, LoadError> {
                     *is_child = true;
                 }
             }
-            Ok((0..root.nodes.len()).filter(|&node| !is_child[node]).collect())
+            Ok((0..root.nodes.len())
+                .filter(|&node| !is_child[node])
+                .collect())
         }
     }
 }
@@ -74,8 +81,14 @@ impl LeftOut {
                 notes.push(format!("{count} {what}"));
             }
         };
-        note(self.lines_and_points, "primitives of points or lines left out");
-        note(self.corners, "corners beyond the last whole triangle left out");
+        note(
+            self.lines_and_points,
+            "primitives of points or lines left out",
+        );
+        note(
+            self.corners,
+            "corners beyond the last whole triangle left out",
+        );
         note(self.morphs, "primitives with morph targets taken at rest");
         note(self.skins, "skinned meshes taken at rest");
     }
@@ -93,12 +106,20 @@ impl Flat<'_> {
     fn nodes(&mut self, roots: Vec<usize>) -> Result<(), LoadError> {
         let nodes = &self.accessors.root.nodes;
         let mut visited = vec![false; nodes.len()];
-        let start = roots.into_iter().rev().map(|index| (index, Transform::IDENTITY));
+        let start = roots
+            .into_iter()
+            .rev()
+            .map(|index| (index, Transform::IDENTITY));
         let mut stack: Vec<(usize, Transform)> = start.collect();
         while let Some((index, parent)) = stack.pop() {
-            let node = nodes.get(index).ok_or_else(|| node_error(index, "there is no such node"))?;
+            let node = nodes
+                .get(index)
+                .ok_or_else(|| node_error(index, "there is no such node"))?;
             if std::mem::replace(&mut visited[index], true) {
-                return Err(node_error(index, "it is in the scene twice, or its own ancestor"));
+                return Err(node_error(
+                    index,
+                    "it is in the scene twice, or its own ancestor",
+                ));
             }
             let local = Transform::of_node(node).map_err(|reason| node_error(index, reason))?;
             let transform = parent.after(&local);
@@ -138,7 +159,12 @@ impl Flat<'_> {
                 return Ok(());
             }
             4..7 => {}
-            mode => return Err(LoadError::malformed(place(), format!("{mode} is not a mode"))),
+            mode => {
+                return Err(LoadError::malformed(
+                    place(),
+                    format!("{mode} is not a mode"),
+                ));
+            }
         }
         self.left_out.morphs += usize::from(!primitive.targets.is_empty());
         let Some(position) = primitive.attributes.position else {
@@ -146,13 +172,21 @@ impl Flat<'_> {
         };
         let vertices = match known.get(&position) {
             Some(vertices) => *vertices,
-            None => *known.entry(position).or_insert(self.vertices(position, transform)?),
+            None => *known
+                .entry(position)
+                .or_insert(self.vertices(position, transform)?),
         };
         let corners = match primitive.indices {
             Some(indices) => self.accessors.indices(indices)?,
             None => (0..vertices.count).collect(),
         };
-        self.triangles(primitive.mode, &corners, vertices, transform.mirrors(), item)
+        self.triangles(
+            primitive.mode,
+            &corners,
+            vertices,
+            transform.mirrors(),
+            item,
+        )
     }
 
     /// Adds the vertices of an accessor, moved to their place.
@@ -160,8 +194,13 @@ impl Flat<'_> {
         let positions = self.accessors.positions(accessor)?;
         let first = self.loaded.positions.len();
         check_vertex_count(first + positions.len())?;
-        self.loaded.positions.extend(positions.iter().map(|&position| transform.apply(position)));
-        Ok(Vertices { first: first as u32, count: positions.len() as u32 })
+        self.loaded
+            .positions
+            .extend(positions.iter().map(|&position| transform.apply(position)));
+        Ok(Vertices {
+            first: first as u32,
+            count: positions.len() as u32,
+        })
     }
 
     fn triangles(
@@ -175,11 +214,17 @@ impl Flat<'_> {
         if let Some(bad) = corners.iter().position(|&corner| corner >= vertices.count) {
             let place = Place::item(format!("{item}, corner {bad}"));
             let (index, vertices) = (corners[bad].into(), vertices.count as usize);
-            return Err(LoadError::new(place, Reason::IndexOutOfRange { index, vertices }));
+            return Err(LoadError::new(
+                place,
+                Reason::IndexOutOfRange { index, vertices },
+            ));
         }
-        let count = if mode == 4 { corners.len() / 3 } else { corners.len().saturating_sub(2) };
-        let used = if mode == 4 { count * 3 } else if count == 0 { 0 } else { corners.len() };
-        self.left_out.corners += corners.len() - used;
+        let (count, surplus) = match (mode, corners.len()) {
+            (4, corners) => (corners / 3, corners % 3),
+            (_, corners @ 0..3) => (0, corners),
+            (_, corners) => (corners - 2, 0),
+        };
+        self.left_out.corners += surplus;
         self.loaded.triangles.extend((0..count).map(|k| {
             let [a, b, c] = match mode {
                 4 => [3 * k, 3 * k + 1, 3 * k + 2],

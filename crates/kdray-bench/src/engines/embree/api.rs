@@ -41,6 +41,8 @@ pub(super) const COHERENT: u32 = 1 << 16;
 pub(super) const NO_GEOMETRY: u32 = u32::MAX;
 /// `RTC_DEVICE_PROPERTY_VERSION`
 const VERSION: i32 = 0;
+/// `RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED`
+const NATIVE_PACKETS_OF_16: i32 = 34;
 
 /// `RTCIntersectArguments` and `RTCOccludedArguments`, which have one layout.
 #[repr(C)]
@@ -164,46 +166,36 @@ impl Api {
         // SAFETY: a library that has all these names is Embree; `check` below asks its version.
         let api = unsafe { Api::load(library) }
             .with_context(|| format!("{} is not Embree 4", path.display()))?;
-        api.check()
-            .with_context(|| format!("in {}", path.display()))?;
+        api.check().with_context(|| format!("in {}", path.display()))?;
         Ok(Box::leak(Box::new(api)))
     }
 
     fn check(&self) -> Result<()> {
         let version = self.version()?;
-        ensure!(
-            version.starts_with("4."),
-            "Embree {version} is not Embree 4"
-        );
+        ensure!(version.starts_with("4."), "Embree {version} is not Embree 4");
         Ok(())
     }
 
-    /// The library's version, as in "4.4.0".
+    /// The library's version, as in "4.4.0", and whether it has packets of 16 on this CPU.
     pub(super) fn version(&self) -> Result<String> {
         let device = self.device(c"threads=1")?;
         // SAFETY: the device is live until it is released here.
-        let number = unsafe {
-            let number = (self.rtcGetDeviceProperty)(device, VERSION);
+        let (number, native) = unsafe {
+            let property = |which| (self.rtcGetDeviceProperty)(device, which);
+            let properties = (property(VERSION), property(NATIVE_PACKETS_OF_16) != 0);
             (self.rtcReleaseDevice)(device);
-            number
+            properties
         };
-        Ok(format!(
-            "{}.{}.{}",
-            number / 10_000,
-            number / 100 % 100,
-            number % 100
-        ))
+        let [major, minor, patch] = [number / 10_000, number / 100 % 100, number % 100];
+        let note = if native { "" } else { " (no native packets of 16)" };
+        Ok(format!("{major}.{minor}.{patch}{note}"))
     }
 
     /// A new device, to be released by the caller.
     pub(super) fn device(&self, configuration: &CStr) -> Result<Device> {
         // SAFETY: the configuration is a C string.
         let device = unsafe { (self.rtcNewDevice)(configuration.as_ptr()) };
-        ensure!(
-            !device.is_null(),
-            "Embree makes no device: {}",
-            self.message(device)
-        );
+        ensure!(!device.is_null(), "Embree makes no device: {}", self.message(device));
         Ok(device)
     }
 

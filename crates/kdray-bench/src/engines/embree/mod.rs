@@ -30,13 +30,11 @@ impl Embree {
             "no Embree library is named: give --embree PATH or set KDRAY_EMBREE; \
              bench/get-embree fetches the library and prints its path",
         )?;
-        Ok(Embree {
-            api: Api::open(path)?,
-            options: options.clone(),
-        })
+        Ok(Embree { api: Api::open(path)?, options: options.clone() })
     }
 
-    /// The version of the library at `path`, as in "4.4.0".
+    /// The version of the library at `path`, as in "4.4.0", with a note where the CPU lacks the
+    /// instructions for packets of 16, which Embree then traces ray by ray.
     pub(crate) fn version(path: &Path) -> Result<String> {
         Api::open(path)?.version()
     }
@@ -50,12 +48,7 @@ impl Engine for Embree {
         let user_data = std::ptr::from_ref(meter).cast_mut().cast();
         // SAFETY: the device is live, and the meter lives as long as the process.
         unsafe { (self.api.rtcSetDeviceMemoryMonitorFunction)(device, monitor, user_data) };
-        Ok(Box::new(Device {
-            api: self.api,
-            device,
-            meter,
-            options: self.options.clone(),
-        }))
+        Ok(Box::new(Device { api: self.api, device, meter, options: self.options.clone() }))
     }
 }
 
@@ -92,17 +85,8 @@ impl Builder for Device {
         // SAFETY: the device is live.
         let scene = unsafe { (api.rtcNewScene)(self.device) };
         api.succeeded(self.device)?;
-        let flags = if self.options.coherent {
-            api::COHERENT
-        } else {
-            0
-        };
-        let mut committed = Committed {
-            api,
-            scene,
-            flags,
-            memory: Memory::default(),
-        };
+        let flags = if self.options.coherent { api::COHERENT } else { 0 };
+        let mut committed = Committed { api, scene, flags, memory: Memory::default() };
         self.attach(mesh, scene)?;
         // SAFETY: the scene is live; flags and quality are Embree's.
         unsafe {

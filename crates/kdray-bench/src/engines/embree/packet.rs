@@ -41,20 +41,14 @@ impl<const N: usize> RayHitPacket<N> {
             instance: [NO_GEOMETRY; N],
             instance_triangle: [NO_GEOMETRY; N],
         };
-        RayHitPacket {
-            ray: RayPacket::new(rays),
-            hit,
-        }
+        RayHitPacket { ray: RayPacket::new(rays), hit }
     }
 
     /// What the ray of a lane has hit.
     pub(super) fn hit(&self, lane: usize) -> Hit {
         match self.hit.geometry[lane] {
             NO_GEOMETRY => Hit::MISS,
-            _ => Hit {
-                t: self.ray.t_far[lane],
-                triangle: self.hit.triangle[lane],
-            },
+            _ => Hit { t: self.ray.t_far[lane], triangle: self.hit.triangle[lane] },
         }
     }
 }
