@@ -5,7 +5,7 @@ use crate::geometry::Aabb;
 /// What the builder thinks a ray pays.
 ///
 /// A ray that enters a node enters a child with probability equal to the ratio of their surface
-/// areas [MB90], so cutting a node costs
+/// areas \[MB90], so cutting a node costs
 ///
 /// ```text
 /// traversal + intersect (N_left S_left + N_right S_right) / S
@@ -18,7 +18,7 @@ pub struct Cost {
     pub traversal: f32,
     /// Price of testing one triangle, `C_I`.
     pub intersect: f32,
-    /// A plane that cuts off empty space costs this fraction less [WH06].
+    /// A plane that cuts off empty space costs this fraction less \[WH06].
     pub empty_bonus: f32,
 }
 

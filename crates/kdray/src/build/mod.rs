@@ -2,7 +2,7 @@
 //!
 //! What tree that is, is a definition and not an algorithm (see ARCHITECTURE.md, "The tree"): the
 //! builders differ in how they find the cheapest plane of each node, and in nothing else. The
-//! clipped bounds are those of [`clip`](crate::geometry::clip), the prices those of [`cost`], and
+//! clipped bounds are those of `geometry::clip`, the prices those of `cost`, and
 //! both are fixed to the last bit.
 
 mod cost;

@@ -11,10 +11,10 @@ pub const MAX_DEPTH: u32 = 255;
 /// How to find the cheapest plane of each node. All give the same tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Builder {
-    /// Sort once, keep the order while splitting: O(N log N) [WH06]. The one to use.
+    /// Sort once, keep the order while splitting: O(N log N) \[WH06]. The one to use.
     #[default]
     Exact,
-    /// Sort the events of every node anew: O(N log² N) [WH06].
+    /// Sort the events of every node anew: O(N log² N) \[WH06].
     Resort,
     /// Count every candidate against every reference: O(N²). The oracle of the tests.
     Naive,
@@ -130,7 +130,7 @@ impl Limits {
     }
 }
 
-/// `8 + 1.3 log2 N`, rounded [PH04].
+/// `8 + 1.3 log2 N`, rounded \[PH04].
 fn default_depth(triangles: usize) -> u32 {
     (8.5 + 1.3 * (triangles.max(1) as f64).log2()) as u32
 }

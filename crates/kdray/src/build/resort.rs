@@ -1,4 +1,4 @@
-//! The builder that sorts the events of every node anew: O(N log² N) [WH06], section 4.2.
+//! The builder that sorts the events of every node anew: O(N log² N) \[WH06], section 4.2.
 
 use super::meter::Meter;
 use super::naive::{Reference, build_with};

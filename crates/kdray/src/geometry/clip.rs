@@ -1,4 +1,4 @@
-//! Clip a triangle to a box: the bounds of the part inside ("perfect splits" [WH06]).
+//! Clip a triangle to a box: the bounds of the part inside ("perfect splits" \[WH06]).
 //!
 //! Sutherland and Hodgman's polygon clipping in single precision, made conservative: the result
 //! may be larger than the true part by a few ulps of the triangle's coordinates, and is never

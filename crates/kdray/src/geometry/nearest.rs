@@ -11,7 +11,7 @@ pub(crate) struct Nearest {
 
 type Vector = [f64; 3];
 
-/// The nearest point of the triangle, in double precision [Eri05], section 5.1.5.
+/// The nearest point of the triangle, in double precision \[Eri05], section 5.1.5.
 ///
 /// Degenerate triangles are the segments or points that they are.
 pub(crate) fn nearest_on_triangle(point: [f32; 3], corners: &[[f32; 3]; 3]) -> Nearest {

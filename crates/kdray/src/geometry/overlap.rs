@@ -2,7 +2,7 @@
 
 use super::Aabb;
 
-/// Whether the triangle and the box meet, touching included: no axis separates them [AM01].
+/// Whether the triangle and the box meet, touching included: no axis separates them \[AM01].
 ///
 /// In double precision; degenerate triangles are the segments or points that they are.
 pub(crate) fn overlaps(corners: &[[f32; 3]; 3], bounds: &Aabb) -> bool {

@@ -1,6 +1,6 @@
 //! Eight triangles that are tested together.
 
-use super::intersect::{Crossing, crossing};
+use super::intersect::{Crossing, crossing, locate};
 use super::prepare::Shear;
 use crate::geometry::Hit;
 
@@ -16,6 +16,13 @@ pub(super) struct Block {
     /// By corner and axis.
     corners: [[Lanes; 3]; 3],
     triangles: [u32; LANES],
+}
+
+/// The lanes of a block that the line of a ray may cross, and those that it crosses for certain.
+#[derive(Clone, Copy)]
+pub(super) struct Filtered {
+    pub(super) maybe: u32,
+    surely: u32,
 }
 
 /// Marks the last block of a leaf, in its last index.
@@ -49,18 +56,18 @@ impl Block {
         self.triangles[LANES - 1] & LAST != 0
     }
 
-    /// A bit for every lane that the line of the ray may cross: all where no SIMD says better.
+    /// What is known of the lanes without a test: nothing.
     #[inline(always)]
-    pub(super) fn all(&self) -> u32 {
-        (1 << LANES) - 1
+    pub(super) fn unknown(&self) -> Filtered {
+        Filtered { maybe: (1 << LANES) - 1, surely: 0 }
     }
 
-    /// A bit for every lane that the line of the ray may cross: those whose edge functions do not
-    /// differ in sign, zeros having any. The arithmetic is that of [`crossing`].
+    /// The lanes whose edge functions do not differ in sign: surely crossed if none is zero. The
+    /// arithmetic is that of [`crossing`].
     #[cfg(target_arch = "x86_64")]
     #[inline]
     #[target_feature(enable = "avx2")]
-    pub(super) fn filter_avx2(&self, shear: &Shear) -> u32 {
+    pub(super) fn filter_avx2(&self, shear: &Shear) -> Filtered {
         use std::arch::x86_64::*;
         // SAFETY: rows are eight lanes, aligned like the block.
         let row = |corner: usize, axis: usize| unsafe {
@@ -88,14 +95,23 @@ impl Block {
         let highest = _mm256_max_ps(_mm256_max_ps(u, v), w);
         let positive = _mm256_cmp_ps::<_CMP_GE_OQ>(lowest, zero);
         let negative = _mm256_cmp_ps::<_CMP_LE_OQ>(highest, zero);
-        _mm256_movemask_ps(_mm256_or_ps(positive, negative)) as u32
+        let maybe = _mm256_movemask_ps(_mm256_or_ps(positive, negative)) as u32;
+        if maybe == 0 {
+            return Filtered { maybe, surely: 0 };
+        }
+        let positive = _mm256_cmp_ps::<_CMP_GT_OQ>(lowest, zero);
+        let negative = _mm256_cmp_ps::<_CMP_LT_OQ>(highest, zero);
+        let surely = _mm256_movemask_ps(_mm256_or_ps(positive, negative)) as u32;
+        Filtered { maybe, surely }
     }
 
-    /// The hit of the triangle in a lane, at any `t`.
+    /// The hit of the triangle in a lane of `filtered`, at any `t`.
     #[inline(always)]
-    pub(super) fn hit(&self, lane: usize, shear: &Shear) -> Option<Hit> {
+    pub(super) fn hit(&self, lane: usize, filtered: Filtered, shear: &Shear) -> Option<Hit> {
         let (triangle, corners) = self.triangle(lane);
-        let Crossing { t, u, v } = crossing(shear, &corners)?;
+        let surely = filtered.surely >> lane & 1 == 1;
+        let Crossing { t, u, v } =
+            if surely { locate(shear, &corners) } else { crossing(shear, &corners)? };
         Some(Hit { t, triangle, u, v })
     }
 

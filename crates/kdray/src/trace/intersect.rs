@@ -1,4 +1,4 @@
-//! What a hit is: the watertight ray-triangle test [WBA13], with ties decided.
+//! What a hit is: the watertight ray-triangle test \[WBA13], with ties decided.
 //!
 //! Corners are translated and sheared so that the ray is the z axis; then the signs of three edge
 //! functions say whether the axis passes between them. Two triangles that share an edge compute
@@ -10,6 +10,9 @@
 //! an infinitesimal step to the side, the same step for all triangles: so a ray through a
 //! shared edge or vertex of a closed mesh hits exactly as many triangles as its neighbour does.
 //! Triangles seen edge-on are never hit.
+//!
+//! Where a triangle is hit is then worked out in double precision, so that `t` is right on slivers
+//! too. A ray that passes an edge on the outside by a rounding hits the edge.
 
 use super::prepare::Shear;
 use crate::geometry::{Hit, Ray};
@@ -35,67 +38,97 @@ pub(super) struct Crossing {
 }
 
 /// Where the line of the ray crosses the triangle, at any `t`.
-#[inline(always)]
+#[inline]
 pub(super) fn crossing(shear: &Shear, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
-    let a = shear.point(&corners[0]);
-    let b = shear.point(&corners[1]);
-    let c = shear.point(&corners[2]);
+    let [a, b, c] = [shear.point(&corners[0]), shear.point(&corners[1]), shear.point(&corners[2])];
     let [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];
-    if (u == 0.0) | (v == 0.0) | (w == 0.0) {
-        return tied_crossing([a, b, c]);
-    }
-    let positive = (u > 0.0) & (v > 0.0) & (w > 0.0);
-    let negative = (u < 0.0) & (v < 0.0) & (w < 0.0);
-    if !(positive | negative) {
-        return None;
-    }
-    let determinant = u + v + w;
-    let height = (u * a[2] + v * b[2]) + w * c[2];
-    Some(Crossing { t: height / determinant, u: v / determinant, v: w / determinant })
+    let crossed = if (u == 0.0) | (v == 0.0) | (w == 0.0) {
+        is_crossed_in_tie([a, b, c])
+    } else {
+        let positive = (u > 0.0) & (v > 0.0) & (w > 0.0);
+        let negative = (u < 0.0) & (v < 0.0) & (w < 0.0);
+        positive | negative
+    };
+    if crossed { Some(locate(shear, corners)) } else { None }
 }
 
 impl Shear {
-    /// A corner in ray space; its z is in units of `t`.
+    /// A corner in the plane across the ray, which passes through its zero.
     #[inline(always)]
-    fn point(&self, corner: &[f32; 3]) -> [f32; 3] {
+    fn point(&self, corner: &[f32; 3]) -> [f32; 2] {
         let x = corner[self.axes[0]] - self.origin[0];
         let y = corner[self.axes[1]] - self.origin[1];
         let z = corner[self.axes[2]] - self.origin[2];
-        [x - self.shear[0] * z, y - self.shear[1] * z, self.t_per_z * z]
+        [x - self.shear[0] * z, y - self.shear[1] * z]
+    }
+
+    /// The same in double precision, and how far along the ray's largest axis the corner is.
+    #[inline(always)]
+    fn precise_point(&self, corner: &[f32; 3]) -> ([f64; 2], f64) {
+        let along = |axis: usize| f64::from(corner[self.axes[axis]]) - f64::from(self.origin[axis]);
+        let (x, y, z) = (along(0), along(1), along(2));
+        ([x - self.precise_shear[0] * z, y - self.precise_shear[1] * z], z)
     }
 }
 
 #[inline(always)]
-fn edge(p: [f32; 3], q: [f32; 3]) -> f32 {
+fn edge(p: [f32; 2], q: [f32; 2]) -> f32 {
     p[0] * q[1] - p[1] * q[0]
 }
 
-/// The crossing of a triangle of which at least one edge function is zero in single precision.
+#[inline(always)]
+fn precise_edge(p: [f64; 2], q: [f64; 2]) -> f64 {
+    p[0] * q[1] - p[1] * q[0]
+}
+
+/// Where a triangle that is crossed is crossed.
+#[inline]
+pub(super) fn locate(shear: &Shear, corners: &[[f32; 3]; 3]) -> Crossing {
+    let (a, az) = shear.precise_point(&corners[0]);
+    let (b, bz) = shear.precise_point(&corners[1]);
+    let (c, cz) = shear.precise_point(&corners[2]);
+    let [u, v, w] = [precise_edge(c, b), precise_edge(a, c), precise_edge(b, a)];
+    let inside = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
+    let sum = u + v + w;
+    let (v, w) =
+        if inside && sum != 0.0 { (v / sum, w / sum) } else { nearest_on_outline([a, b, c]) };
+    let z = az + (v * (bz - az) + w * (cz - az));
+    Crossing { t: (z * shear.t_per_z) as f32, u: v as f32, v: w as f32 }
+}
+
+/// Weights of the second and third corner at the point of the outline nearest to the ray.
 #[cold]
-fn tied_crossing([a, b, c]: [[f32; 3]; 3]) -> Option<Crossing> {
-    let edges = [exact_edge(c, b), exact_edge(a, c), exact_edge(b, a)];
-    let sides = [side(edges[0], c, b)?, side(edges[1], a, c)?, side(edges[2], b, a)?];
-    if sides != [sides[0]; 3] {
-        return None;
+fn nearest_on_outline([a, b, c]: [[f64; 2]; 3]) -> (f64, f64) {
+    let nearest = |p: [f64; 2], q: [f64; 2]| {
+        let along = [q[0] - p[0], q[1] - p[1]];
+        let length = along[0] * along[0] + along[1] * along[1];
+        let s = -(p[0] * along[0] + p[1] * along[1]) / length;
+        let s = if s.is_nan() { 0.0 } else { s.clamp(0.0, 1.0) };
+        let point = [p[0] + s * along[0], p[1] + s * along[1]];
+        (point[0] * point[0] + point[1] * point[1], s)
+    };
+    let (ab, bc, ca) = (nearest(a, b), nearest(b, c), nearest(c, a));
+    if ab.0 <= bc.0 && ab.0 <= ca.0 {
+        (ab.1, 0.0)
+    } else if bc.0 <= ca.0 {
+        (1.0 - bc.1, bc.1)
+    } else {
+        (0.0, 1.0 - ca.1)
     }
-    let [u, v, w] = edges;
-    let determinant = u + v + w;
-    if determinant == 0.0 {
-        return None;
-    }
-    let height = (u * f64::from(a[2]) + v * f64::from(b[2])) + w * f64::from(c[2]);
-    let share = |value: f64| (value / determinant) as f32;
-    Some(Crossing { t: share(height), u: share(v), v: share(w) })
 }
 
-/// An edge function whose sign is exact: its products are.
-fn exact_edge(p: [f32; 3], q: [f32; 3]) -> f64 {
-    f64::from(p[0]) * f64::from(q[1]) - f64::from(p[1]) * f64::from(q[0])
+/// Whether a triangle is crossed of which at least one edge function is zero in single precision.
+#[cold]
+fn is_crossed_in_tie([a, b, c]: [[f32; 2]; 3]) -> bool {
+    let sides = [side(c, b), side(a, c), side(b, a)];
+    sides == [Some(true); 3] || sides == [Some(false); 3]
 }
 
-/// Whether the axis is on the positive side of the edge, or would be an infinitesimal step
+/// Whether the ray is on the positive side of the edge, or would be an infinitesimal step
 /// `(e, e²)` to the side; `None` for an edge that is a point.
-fn side(edge: f64, p: [f32; 3], q: [f32; 3]) -> Option<bool> {
+fn side(p: [f32; 2], q: [f32; 2]) -> Option<bool> {
+    // The products are exact, so the sign is.
+    let edge = precise_edge(p.map(f64::from), q.map(f64::from));
     if edge != 0.0 {
         return Some(edge > 0.0);
     }
@@ -158,6 +191,19 @@ mod tests {
                     fan.iter().filter(|corners| intersect(&ray, 0, corners).is_some()).count();
                 assert_eq!(hits, 1, "at {x} {y} from {z}");
             }
+        }
+    }
+
+    #[test]
+    fn slivers_have_precise_distances() {
+        let sliver = [[-100.0, 0.0, 3.0], [88.0, 0.1, 40.0], [-100.0, 0.7, 3.0]];
+        for x in [-99.0, -50.0, 0.0, 30.0] {
+            let ray = Ray::new([x, 0.1, -7.0], [0.001, 0.001, 1.0]);
+            let hit = intersect(&ray, 0, &sliver).expect("the sliver is there");
+            // Along the sliver only x and z change: z = 3 + 37 (x + 100) / 188.
+            let (slope, x) = (37.0 / 188.0, f64::from(x));
+            let t = (3.0 + slope * (x + 100.0) + 7.0) / (1.0 - slope * f64::from(0.001_f32));
+            assert!((f64::from(hit.t) / t - 1.0).abs() < 1e-6, "{} {t}", hit.t);
         }
     }
 

@@ -2,24 +2,7 @@
 
 use crate::geometry::{Aabb, Ray};
 
-/// A ray and all that its traversal needs.
-pub(super) struct Prepared {
-    pub(super) shear: Shear,
-    pub(super) slabs: Slabs,
-    pub(super) t_min: f32,
-    pub(super) t_max: f32,
-}
-
-impl Prepared {
-    /// Prepares a ray for a scene whose largest coordinate is `reach`.
-    #[inline(always)]
-    pub(super) fn new(ray: &Ray, reach: f32) -> Self {
-        let (shear, slabs) = (Shear::new(ray), Slabs::new(ray, reach));
-        Self { shear, slabs, t_min: ray.t_min, t_max: ray.t_max }
-    }
-}
-
-/// A ray that will be intersected with triangles: the shear that takes it to the z axis [WBA13].
+/// A ray that will be intersected with triangles: the shear that takes it to the z axis \[WBA13].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shear {
     /// Axes in the order x, y, z of ray space; z is where the direction is largest.
@@ -27,8 +10,9 @@ pub(super) struct Shear {
     pub(super) origin: [f32; 3],
     /// What x and y lose per unit of z.
     pub(super) shear: [f32; 2],
+    pub(super) precise_shear: [f64; 2],
     /// `t` per unit of z.
-    pub(super) t_per_z: f32,
+    pub(super) t_per_z: f64,
 }
 
 impl Shear {
@@ -44,17 +28,16 @@ impl Shear {
         };
         let direction = ray.direction;
         // Two axes change places where the ray looks down, so that windings keep their sense.
-        let axes = match (largest, direction[largest] < 0.0) {
-            (0, false) => [1, 2, 0],
-            (0, true) => [2, 1, 0],
-            (1, false) => [2, 0, 1],
-            (1, true) => [0, 2, 1],
-            (_, false) => [0, 1, 2],
-            (_, true) => [1, 0, 2],
-        };
-        let [x, y, z] = [direction[axes[0]], direction[axes[1]], direction[axes[2]]];
+        let next = [1, 2, 0][largest];
+        let last = [2, 0, 1][largest];
+        let axes =
+            if direction[largest] < 0.0 { [last, next, largest] } else { [next, last, largest] };
         let origin = [ray.origin[axes[0]], ray.origin[axes[1]], ray.origin[axes[2]]];
-        Self { axes, origin, shear: [x / z, y / z], t_per_z: 1.0 / z }
+        let t_per_z = 1.0 / f64::from(direction[axes[2]]);
+        let precise_shear =
+            [f64::from(direction[axes[0]]) * t_per_z, f64::from(direction[axes[1]]) * t_per_z];
+        let shear = [precise_shear[0] as f32, precise_shear[1] as f32];
+        Self { axes, origin, shear, precise_shear, t_per_z }
     }
 }
 

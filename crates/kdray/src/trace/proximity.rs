@@ -79,7 +79,7 @@ impl Tracer {
     /// The triangles that have a point in common with `region`, touching included, in ascending
     /// order, in `triangles`. What was there before is lost; its memory is used again.
     ///
-    /// The triangles themselves are tested, not only their bounds. [AM01]
+    /// The triangles themselves are tested, not only their bounds. \[AM01]
     pub fn within_box(&self, region: &Aabb, triangles: &mut Vec<u32>) {
         triangles.clear();
         if region.is_empty() || !(0..3).all(|axis| region.extent()[axis] >= 0.0) {

@@ -9,7 +9,15 @@ use crate::build::MAX_DEPTH;
 /// eight lanes needs room for all of them.
 const CAPACITY: usize = 7 * (MAX_DEPTH as usize / 3 + 2) + 8;
 
-/// A stack of subtrees, with the part of the ray inside each.
+/// A subtree to be visited, and the part of the ray inside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Visit {
+    pub(super) child: Child,
+    pub(super) t_min: f32,
+    pub(super) t_max: f32,
+}
+
+/// A stack of visits.
 pub(super) struct Stack {
     children: [MaybeUninit<Child>; CAPACITY],
     t_min: [MaybeUninit<f32>; CAPACITY],
@@ -29,10 +37,10 @@ impl Stack {
     }
 
     #[inline(always)]
-    pub(super) fn push(&mut self, child: Child, t_min: f32, t_max: f32) {
-        self.children[self.height].write(child);
-        self.t_min[self.height].write(t_min);
-        self.t_max[self.height].write(t_max);
+    pub(super) fn push(&mut self, visit: Visit) {
+        self.children[self.height].write(visit.child);
+        self.t_min[self.height].write(visit.t_min);
+        self.t_max[self.height].write(visit.t_max);
         self.height += 1;
     }
 
@@ -52,17 +60,17 @@ impl Stack {
         self.height += count;
     }
 
-    /// The entry on top.
+    /// The visit on top.
     #[inline(always)]
-    pub(super) fn pop(&mut self) -> Option<(Child, f32, f32)> {
+    pub(super) fn pop(&mut self) -> Option<Visit> {
         self.height = self.height.checked_sub(1)?;
         // SAFETY: everything below the old height was written.
         unsafe {
-            Some((
-                self.children.get_unchecked(self.height).assume_init(),
-                self.t_min.get_unchecked(self.height).assume_init(),
-                self.t_max.get_unchecked(self.height).assume_init(),
-            ))
+            Some(Visit {
+                child: self.children.get_unchecked(self.height).assume_init(),
+                t_min: self.t_min.get_unchecked(self.height).assume_init(),
+                t_max: self.t_max.get_unchecked(self.height).assume_init(),
+            })
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What a mesh and its tree know for queries.
 
 use super::only::Only;
-use super::prepare::{Prepared, reach};
+use super::prepare::{Slabs, reach};
 use super::traverse::{Visitor, traverse};
 use super::wide::Layout;
 use crate::geometry::{Aabb, Hit, Mesh, Ray};
@@ -67,7 +67,7 @@ impl Tracer {
     /// The first triangle along the ray; of several at one `t` the one with the lowest index.
     ///
     /// Exactly the hit that [`intersect`](super::intersect()) gives for that triangle. Watertight:
-    /// no ray slips between triangles that share an edge. [PH04], [WBA13]
+    /// no ray slips between triangles that share an edge. \[PH04], \[WBA13]
     #[must_use]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         self.all().closest_hit(ray)
@@ -117,8 +117,8 @@ impl Tracer {
     #[inline]
     pub(super) fn visit(&self, ray: &Ray, visitor: &mut impl Visitor) {
         if ray.is_valid() {
-            let prepared = Prepared::new(ray, self.reach);
-            traverse(&self.layout, &self.bounds, &prepared, visitor);
+            let slabs = Slabs::new(ray, self.reach);
+            traverse(&self.layout, &self.bounds, ray, &slabs, visitor);
         }
     }
 }

@@ -1,11 +1,11 @@
-//! Visit the leaves along a ray from front to back, with a stack [PH04].
+//! Visit the leaves along a ray from front to back, with a stack \[PH04].
 
-use super::block::Block;
-use super::prepare::Prepared;
-use super::stack::Stack;
+use super::block::{Block, Filtered};
+use super::prepare::{Shear, Slabs};
+use super::stack::{Stack, Visit};
 use super::step;
 use super::wide::{Child, Layout, Wide};
-use crate::geometry::{Aabb, Hit};
+use crate::geometry::{Aabb, Hit, Ray};
 
 /// Sees what a ray comes to.
 pub(super) trait Visitor {
@@ -32,80 +32,91 @@ pub(super) const ENOUGH: f32 = f32::NEG_INFINITY;
 ///
 /// Planes are as thick as [`Slabs`](super::prepare::Slabs) says, so a ray near a plane visits
 /// both sides.
-pub(super) fn traverse(layout: &Layout, bounds: &Aabb, ray: &Prepared, visitor: &mut impl Visitor) {
-    #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
-        // SAFETY: the processor has AVX2.
-        return unsafe { traverse_avx2(layout, bounds, ray, visitor) };
-    }
-    traverse_with(
-        layout,
-        bounds,
-        ray,
-        visitor,
-        |wide, interval, stack| {
-            step::step(wide, &ray.slabs, interval, stack);
-        },
-        Block::all,
-    );
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
-fn traverse_avx2(layout: &Layout, bounds: &Aabb, ray: &Prepared, visitor: &mut impl Visitor) {
-    let lanes = step::avx2::Lanes::new(&ray.slabs);
-    let step = |wide: &Wide, interval: [f32; 2], stack: &mut Stack| {
-        step::avx2::step(wide, &ray.slabs, &lanes, interval, stack);
-    };
-    traverse_with(layout, bounds, ray, visitor, step, |block| block.filter_avx2(&ray.shear));
-}
-
-/// The traversal, with a way to step down and one to filter the triangles of a block.
-#[inline(always)]
-fn traverse_with(
+pub(super) fn traverse(
     layout: &Layout,
     bounds: &Aabb,
-    ray: &Prepared,
+    ray: &Ray,
+    slabs: &Slabs,
     visitor: &mut impl Visitor,
-    step: impl Fn(&Wide, [f32; 2], &mut Stack),
-    filter: impl Fn(&Block) -> u32,
 ) {
-    let (t_min, t_max) = ray.slabs.clip(bounds, ray.t_min, ray.t_max);
+    let (t_min, t_max) = slabs.clip(bounds, ray.t_min, ray.t_max);
     if t_min > t_max {
         return;
     }
-    let mut until = t_max;
-    let mut stack = Stack::new();
-    stack.push(Child(0), t_min, t_max);
-    while let Some((child, t_min, t_max)) = stack.pop() {
-        if t_min > until {
-            continue;
-        }
-        let Some(mut place) = child.block() else {
-            visitor.step();
-            step(&layout.wides[child.0 as usize], [t_min, t_max.min(until)], &mut stack);
-            continue;
+    let entry = Entry { layout, shear: Shear::new(ray), slabs, interval: [t_min, t_max] };
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has AVX2.
+        return unsafe { entry.traverse_avx2(visitor) };
+    }
+    entry.traverse_with(
+        visitor,
+        |wide, interval, stack| step::step(wide, slabs, interval, stack),
+        Block::unknown,
+    );
+}
+
+/// A ray that has entered the root's box.
+struct Entry<'a> {
+    layout: &'a Layout,
+    shear: Shear,
+    slabs: &'a Slabs,
+    interval: [f32; 2],
+}
+
+impl Entry<'_> {
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+    fn traverse_avx2(&self, visitor: &mut impl Visitor) {
+        let lanes = step::avx2::Lanes::new(self.slabs);
+        let step = |wide: &Wide, interval: [f32; 2], stack: &mut Stack| {
+            step::avx2::step(wide, self.slabs, &lanes, interval, stack)
         };
-        visitor.leaf();
-        loop {
-            let block = &layout.blocks[place];
-            visitor.test();
-            let mut lanes = filter(block);
-            while lanes != 0 {
-                let lane = lanes.trailing_zeros() as usize;
-                lanes &= lanes - 1;
-                let Some(hit) = block.hit(lane, &ray.shear) else {
-                    continue;
-                };
-                until = until.min(visitor.hit(hit));
-                if until == ENOUGH {
-                    return;
+        self.traverse_with(visitor, step, |block| block.filter_avx2(&self.shear));
+    }
+
+    /// The traversal, with a way to step down and one to filter the triangles of a block.
+    #[inline(always)]
+    fn traverse_with(
+        &self,
+        visitor: &mut impl Visitor,
+        step: impl Fn(&Wide, [f32; 2], &mut Stack) -> Option<Visit>,
+        filter: impl Fn(&Block) -> Filtered,
+    ) {
+        let mut until = self.interval[1];
+        let mut stack = Stack::new();
+        let mut nearest =
+            Some(Visit { child: Child(0), t_min: self.interval[0], t_max: self.interval[1] });
+        while let Some(Visit { child, t_min, t_max }) = nearest.take().or_else(|| stack.pop()) {
+            if t_min > until {
+                continue;
+            }
+            let Some(first) = child.block() else {
+                visitor.step();
+                let interval = [t_min, t_max.min(until)];
+                // SAFETY: children of a layout are in it.
+                let wide = unsafe { self.layout.wides.get_unchecked(child.0 as usize) };
+                nearest = step(wide, interval, &mut stack);
+                continue;
+            };
+            visitor.leaf();
+            for block in &self.layout.blocks[first..] {
+                visitor.test();
+                let filtered = filter(block);
+                let mut lanes = filtered.maybe;
+                while lanes != 0 {
+                    let lane = lanes.trailing_zeros() as usize;
+                    lanes &= lanes - 1;
+                    let Some(hit) = block.hit(lane, filtered, &self.shear) else { continue };
+                    until = until.min(visitor.hit(hit));
+                    if until == ENOUGH {
+                        return;
+                    }
+                }
+                if block.is_last() {
+                    break;
                 }
             }
-            if block.is_last() {
-                break;
-            }
-            place += 1;
         }
     }
 }

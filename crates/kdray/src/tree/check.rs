@@ -35,44 +35,25 @@ pub(super) fn walk(
 ) -> Result<(), Fault> {
     let mut pending = vec![Pending { index: 0, bounds: root, depth: 0 }];
     let (mut next, mut used) = (0, 0);
-    while let Some(Pending { index, bounds, depth }) = pending.pop() {
-        let fault = |fault| Err(Fault { node: index, fault });
+    while let Some(place) = pending.pop() {
+        let Pending { index, bounds, depth } = place;
+        let fault = |fault| Fault { node: index, fault };
         if index != next {
-            return fault("is not where depth-first order puts it");
+            return Err(fault("is not where depth-first order puts it"));
         }
         next += 1;
-        let Some(node) = nodes.get(index) else {
-            return fault("is beyond the last node");
-        };
+        let node = nodes.get(index).ok_or(fault("is beyond the last node"))?;
         visit(index, &bounds, depth);
         match node.kind() {
             Kind::Inner { axis, position, right } => {
-                if !(bounds.lower[axis] < position && position < bounds.upper[axis]) {
-                    return fault("has its plane outside its box");
-                }
-                if depth >= MAX_DEPTH {
-                    return fault("is deeper than any tree may be");
-                }
-                let [left_bounds, right_bounds] = bounds.cut(axis, position);
-                let child = |index, bounds| Pending { index, bounds, depth: depth + 1 };
-                pending.push(child(right, right_bounds));
-                pending.push(child(index + 1, left_bounds));
+                let children = place.children(axis, position, right).map_err(fault)?;
+                pending.extend(children);
             }
             Kind::Leaf { first, count } => {
-                let leaf = first.checked_add(count).and_then(|end| references.get(first..end));
-                let Some(leaf) = leaf else {
-                    return fault("has references beyond the last");
-                };
                 if first != used {
-                    return fault("does not start where the leaf before it ended");
+                    return Err(fault("does not start where the leaf before it ended"));
                 }
-                used += count;
-                if leaf.iter().any(|triangle| *triangle as usize >= triangles) {
-                    return fault("refers to a triangle that is not there");
-                }
-                if !leaf.is_sorted_by(|a, b| a < b) {
-                    return fault("has references that do not ascend");
-                }
+                used = check_leaf(references, first, count, triangles).map_err(fault)?;
             }
         }
     }
@@ -80,10 +61,45 @@ pub(super) fn walk(
         return Err(Fault { node: next, fault: "belongs to no tree" });
     }
     if used != references.len() {
-        return Err(Fault {
-            node: next - 1,
-            fault: "is the last leaf, but there are more references",
-        });
+        let fault = "is the last leaf, but there are more references";
+        return Err(Fault { node: next - 1, fault });
     }
     Ok(())
+}
+
+impl Pending {
+    /// The right child and the left one, to be visited first.
+    fn children(
+        &self,
+        axis: usize,
+        position: f32,
+        right: usize,
+    ) -> Result<[Self; 2], &'static str> {
+        if !(self.bounds.lower[axis] < position && position < self.bounds.upper[axis]) {
+            return Err("has its plane outside its box");
+        }
+        if self.depth >= MAX_DEPTH {
+            return Err("is deeper than any tree may be");
+        }
+        let [left_bounds, right_bounds] = self.bounds.cut(axis, position);
+        let child = |index, bounds| Self { index, bounds, depth: self.depth + 1 };
+        Ok([child(right, right_bounds), child(self.index + 1, left_bounds)])
+    }
+}
+
+/// The end of a leaf's references, if they are sound.
+fn check_leaf(
+    references: &[u32],
+    first: usize,
+    count: usize,
+    triangles: usize,
+) -> Result<usize, &'static str> {
+    let leaf = references.get(first..first + count).ok_or("has references beyond the last")?;
+    if leaf.iter().any(|triangle| *triangle as usize >= triangles) {
+        return Err("refers to a triangle that is not there");
+    }
+    if !leaf.is_sorted_by(|a, b| a < b) {
+        return Err("has references that do not ascend");
+    }
+    Ok(first + count)
 }

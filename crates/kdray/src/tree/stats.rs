@@ -34,7 +34,7 @@ pub struct Stats {
 
 impl Stats {
     /// What a ray is expected to pay at these prices, in units of one intersection:
-    /// `(C_T e_inner + C_I e_prim) / C_I` [MB90].
+    /// `(C_T e_inner + C_I e_prim) / C_I` \[MB90].
     #[must_use]
     pub fn sah_cost(&self, cost: &Cost) -> f64 {
         self.e_inner * f64::from(cost.traversal) / f64::from(cost.intersect) + self.e_prim

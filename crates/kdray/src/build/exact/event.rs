@@ -1,4 +1,4 @@
-//! Events: where references end, lie flat and start along an axis [WH06].
+//! Events: where references end, lie flat and start along an axis \[WH06].
 
 use crate::geometry::Aabb;
 

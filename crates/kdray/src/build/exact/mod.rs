@@ -1,4 +1,4 @@
-//! The builder for everybody: O(N log N) by sorting once [WH06], parallel over subtrees and,
+//! The builder for everybody: O(N log N) by sorting once \[WH06], parallel over subtrees and,
 //! near the root, over axes.
 //!
 //! A node goes through the stages of a level: [`sweep`] finds its plane, [`split`] assigns and

@@ -34,10 +34,7 @@ impl OwnedSet {
     /// Empty lists with room for `count` references.
     pub(super) fn with_room(count: usize) -> Self {
         let events = || zeros_in_huge_pages(2 * count + 1);
-        Self {
-            triangles: zeros_in_huge_pages(count + 1),
-            events: [events(), events(), events()],
-        }
+        Self { triangles: zeros_in_huge_pages(count + 1), events: [events(), events(), events()] }
     }
 
     /// Bytes of a set with room for `count` references.

@@ -2,7 +2,7 @@
 //!
 //! Events keep their order, because every list is split from front to back. Only straddlers
 //! get new bounds, so only their events are made anew; they are sorted among themselves and merged
-//! into the lists while these are split ([WH06], section 4.3).
+//! into the lists while these are split (\[WH06], section 4.3).
 
 use super::Context;
 use super::event::{Event, Kind, events_of};

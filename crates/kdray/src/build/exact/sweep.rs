@@ -6,7 +6,7 @@
 //! N_left = starts        N_right = N - (k - starts) - (1 if the event is an end)
 //! ```
 //!
-//! references on the two sides: the counts of [WZL11], section 3. Events that share a plane with
+//! references on the two sides: the counts of \[WZL11], section 3. Events that share a plane with
 //! others count too many references (all but the last end and the first start of the plane do),
 //! never too few, and prices grow with the counts; so every event may be priced as if it were
 //! alone, and the cheapest of them is the cheapest plane. Flat references need more care: the

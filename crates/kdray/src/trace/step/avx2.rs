@@ -3,7 +3,7 @@
 use std::arch::x86_64::*;
 
 use super::super::prepare::Slabs;
-use super::super::stack::Stack;
+use super::super::stack::{Stack, Visit};
 use super::super::wide::{Child, Wide};
 
 /// A ray's [`Slabs`] in registers, once in each half.
@@ -36,7 +36,7 @@ pub(in super::super) fn step(
     lanes: &Lanes,
     interval: [f32; 2],
     stack: &mut Stack,
-) {
+) -> Option<Visit> {
     let axis = (wide.axes() >> 6) as usize & 3;
     let top = (wide.planes[3] - slabs.origin[axis]) * slabs.inverse[axis];
     let top = [top - slabs.thickness[axis], top + slabs.thickness[axis]];
@@ -45,7 +45,7 @@ pub(in super::super) fn step(
     let turned = Turned::new(wide, lanes, backward);
     let [t_min, t_max] = turned.intervals(interval, top);
     let children = turned.children();
-    push_met(children, t_min, t_max, stack);
+    take_met([children, t_min, t_max], stack)
 }
 
 /// A wide node as the ray sees it: the near half in the low lanes.
@@ -138,20 +138,44 @@ impl Turned {
     }
 }
 
-/// Puts the children whose interval is not empty on the stack, the farthest first.
+/// Eight lanes in memory.
+#[repr(align(32))]
+struct Spilled([f32; 8]);
+
+/// The nearest of the children whose interval is not empty; the others go on the stack.
+///
+/// The next step waits for the nearest, so it takes the short way: the lanes are in memory before
+/// it is known which of them is wanted.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn push_met(children: __m256, t_mins: __m256, t_maxs: __m256, stack: &mut Stack) {
+fn take_met([children, t_mins, t_maxs]: [__m256; 3], stack: &mut Stack) -> Option<Visit> {
     let met = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(t_mins, t_maxs));
     let nothing = _mm256_set1_epi32(Child::EMPTY.0 as i32);
     let empty = _mm256_cmpeq_epi32(_mm256_castps_si256(children), nothing);
     let met = (met & !_mm256_movemask_ps(_mm256_castsi256_ps(empty))) as usize;
+    let mut spilled = [const { Spilled([0.0; 8]) }; 3];
+    // SAFETY: each takes eight lanes and is aligned for them.
+    unsafe {
+        _mm256_store_ps(spilled[0].0.as_mut_ptr(), children);
+        _mm256_store_ps(spilled[1].0.as_mut_ptr(), t_mins);
+        _mm256_store_ps(spilled[2].0.as_mut_ptr(), t_maxs);
+    }
+    if met == 0 {
+        return None;
+    }
+    let others = met & (met - 1);
     // SAFETY: a row of the table has eight bytes.
-    let order = unsafe { _mm_loadl_epi64(DESCENDING[met].as_ptr().cast()) };
+    let order = unsafe { _mm_loadl_epi64(DESCENDING[others].as_ptr().cast()) };
     let order = _mm256_cvtepu8_epi32(order);
     let sorted = |lanes| _mm256_permutevar8x32_ps(lanes, order);
-    let entries = [sorted(children), sorted(t_mins), sorted(t_maxs)];
-    stack.push_lanes(entries, met.count_ones() as usize);
+    let visits = [sorted(children), sorted(t_mins), sorted(t_maxs)];
+    stack.push_lanes(visits, others.count_ones() as usize);
+    let nearest = met.trailing_zeros() as usize & 7;
+    Some(Visit {
+        child: Child(spilled[0].0[nearest].to_bits()),
+        t_min: spilled[1].0[nearest],
+        t_max: spilled[2].0[nearest],
+    })
 }
 
 /// For every set of lanes, the lanes in it from the highest down.

@@ -4,12 +4,18 @@
 pub(super) mod avx2;
 
 use super::prepare::Slabs;
-use super::stack::Stack;
+use super::stack::{Stack, Visit};
 use super::wide::{Child, Wide};
 
-/// Puts the children that the ray meets in `t_min..=t_max` on the stack, the nearest on top.
+/// The nearest of the children that the ray meets in the interval; the others go on the stack, the
+/// nearest of them on top.
 #[inline(always)]
-pub(super) fn step(wide: &Wide, slabs: &Slabs, interval: [f32; 2], stack: &mut Stack) {
+pub(super) fn step(
+    wide: &Wide,
+    slabs: &Slabs,
+    interval: [f32; 2],
+    stack: &mut Stack,
+) -> Option<Visit> {
     let mut planes = [[0.0; 2]; 7];
     for lane in 0..7 {
         let axis = (wide.axes() >> (2 * lane)) as usize & 3;
@@ -17,6 +23,7 @@ pub(super) fn step(wide: &Wide, slabs: &Slabs, interval: [f32; 2], stack: &mut S
         planes[lane] = [t - slabs.thickness[axis], t + slabs.thickness[axis]];
     }
     let backward = |lane: usize| (slabs.backward >> ((wide.axes() >> (2 * lane)) & 3)) as usize & 1;
+    let mut nearest = None;
     for rank in (0..8).rev() {
         let (mut t_min, mut t_max) = (interval[0], interval[1]);
         let mut pass = |lane: usize, far: usize| {
@@ -32,10 +39,14 @@ pub(super) fn step(wide: &Wide, slabs: &Slabs, interval: [f32; 2], stack: &mut S
         let lane = 4 * half + 1 + quarter;
         pass(lane, far[2]);
         let child = wide.children[4 * half + 2 * quarter + (far[2] ^ backward(lane))];
-        if t_min <= t_max && child != Child::EMPTY {
-            stack.push(child, t_min, t_max);
+        if t_min > t_max || child == Child::EMPTY {
+            continue;
+        }
+        if let Some(farther) = nearest.replace(Visit { child, t_min, t_max }) {
+            stack.push(farther);
         }
     }
+    nearest
 }
 
 #[cfg(all(test, target_arch = "x86_64"))]
@@ -64,8 +75,8 @@ mod tests {
         wide
     }
 
-    fn entries(mut stack: Stack) -> Vec<(Child, f32, f32)> {
-        std::iter::from_fn(|| stack.pop()).collect()
+    fn visits(nearest: Option<Visit>, mut stack: Stack) -> Vec<Visit> {
+        nearest.into_iter().chain(std::iter::from_fn(|| stack.pop())).collect()
     }
 
     #[test]
@@ -86,12 +97,14 @@ mod tests {
             let slabs = Slabs::new(&Ray::new(origin, direction), 1.0);
             let interval = [0.2 * noise(&mut state), 2.0 * noise(&mut state)];
             let (mut plain, mut lanes) = (Stack::new(), Stack::new());
-            step(&wide, &slabs, interval, &mut plain);
+            let nearest = step(&wide, &slabs, interval, &mut plain);
+            let plain = visits(nearest, plain);
             // SAFETY: the processor has AVX2.
-            unsafe { avx2::step(&wide, &slabs, &avx2::Lanes::new(&slabs), interval, &mut lanes) };
-            let plain = entries(plain);
+            let nearest = unsafe {
+                avx2::step(&wide, &slabs, &avx2::Lanes::new(&slabs), interval, &mut lanes)
+            };
             met += plain.len();
-            assert_eq!(plain, entries(lanes), "{wide:?} {slabs:?} {interval:?}");
+            assert_eq!(plain, visits(nearest, lanes), "{wide:?} {slabs:?} {interval:?}");
         }
         assert!(met > 100_000, "only {met} children were met");
     }
