@@ -1,0 +1,101 @@
+//! What colour things have.
+
+use glam::Vec3;
+use kdray::Mesh;
+
+use crate::components::Components;
+
+/// A colour for each triangle, and one for the ground.
+pub(crate) struct Palette {
+    /// For each triangle an index into `colours`; empty if all have the first.
+    of_triangle: Vec<u32>,
+    colours: Vec<Vec3>,
+    ground: Vec3,
+}
+
+/// sRGB colours of the large parts, the largest first.
+const PARTS: [u32; 8] =
+    [0x2f8f8b, 0xe07a5f, 0xf2cc8f, 0x3d6fa5, 0xd9d4c7, 0x81b29a, 0xb5495b, 0x8a79b5];
+
+/// sRGB colours between which the many small parts vary.
+const SMALL_PARTS: [u32; 2] = [0x7f9a4e, 0xc9c07a];
+
+/// sRGB colours between which all parts vary where there are many large ones: a building.
+const STONES: [u32; 2] = [0xcdb79a, 0xe3dccf];
+
+/// sRGB colour of floors and of the ground.
+const FLOOR: u32 = 0xd8cbb6;
+
+/// A part is small if its area is less than this fraction of the largest one's, floors aside.
+const SMALL: f32 = 0.02;
+
+impl Palette {
+    /// One colour for everything.
+    pub(crate) fn uniform(colour: Vec3) -> Self {
+        Self { of_triangle: Vec::new(), colours: vec![colour], ground: colour }
+    }
+
+    /// A colour for each connected part.
+    pub(crate) fn new(mesh: &Mesh, components: &Components, up: Vec3) -> Self {
+        let floors = floors(mesh, components, up);
+        let parts = || components.areas.iter().zip(&floors);
+        let largest = parts().find(|(_, floor)| !**floor).map_or(0.0, |(area, _)| *area);
+        let is_large = |(area, floor): (&f32, &bool)| !floor && *area >= SMALL * largest;
+        let is_building = parts().filter(|part| is_large(*part)).count() > PARTS.len();
+        let mut unused = PARTS.into_iter();
+        let colours = parts().enumerate().map(|(index, part)| {
+            let between = |[a, b]: [u32; 2]| linear(a).lerp(linear(b), scattered(index));
+            match part {
+                _ if is_building => between(STONES),
+                (_, true) => linear(FLOOR),
+                _ if is_large(part) => unused.next().map_or_else(|| linear(FLOOR), linear),
+                _ => between(SMALL_PARTS),
+            }
+        });
+        Self {
+            colours: colours.collect(),
+            of_triangle: components.of_triangle.clone(),
+            ground: linear(FLOOR),
+        }
+    }
+
+    pub(crate) fn of(&self, triangle: usize) -> Vec3 {
+        let part = self.of_triangle.get(triangle).copied().unwrap_or(0);
+        self.colours[part as usize]
+    }
+
+    pub(crate) fn ground(&self) -> Vec3 {
+        self.ground
+    }
+}
+
+/// Which parts are flat and at the foot of the mesh.
+fn floors(mesh: &Mesh, components: &Components, up: Vec3) -> Vec<bool> {
+    let height = |point: [f32; 3]| Vec3::from(point).dot(up);
+    let mut spans = vec![[f32::INFINITY, f32::NEG_INFINITY]; components.areas.len()];
+    let mut scene = [f32::INFINITY, f32::NEG_INFINITY];
+    let widen = |[low, high]: [f32; 2], y: f32| [low.min(y), high.max(y)];
+    for (triangle, part) in components.of_triangle.iter().enumerate() {
+        for y in mesh.triangle(triangle).map(height) {
+            spans[*part as usize] = widen(spans[*part as usize], y);
+            scene = widen(scene, y);
+        }
+    }
+    let foot = scene[0] + 0.03 * (scene[1] - scene[0]);
+    let all_is_flat = scene[1] <= scene[0];
+    spans.iter().map(|[_, high]| *high <= foot && !all_is_flat).collect()
+}
+
+/// Numbers in 0..1 that are spread evenly: multiples of the golden ratio.
+fn scattered(index: usize) -> f32 {
+    (index as u32).wrapping_mul(2_654_435_769) as f32 / 4_294_967_296.0
+}
+
+/// The linear colour of an sRGB one.
+fn linear(srgb: u32) -> Vec3 {
+    let channel = |shift: u32| {
+        let encoded = (srgb >> shift & 255) as f32 / 255.0;
+        if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+    };
+    Vec3::new(channel(16), channel(8), channel(0))
+}

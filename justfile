@@ -1,0 +1,36 @@
+# Lists the chores.
+default:
+    @just --list --unsorted
+
+# Formats everything.
+fmt:
+    cargo fmt --all
+
+# Checks style: lints, sizes of files and functions, keys of papers, the README's example.
+lint:
+    cargo fmt --all --check
+    cargo clippy --workspace --all-targets -- -D warnings
+    cargo xtask budgets
+    cargo xtask references
+    cargo xtask readme
+
+# Runs every test.
+test:
+    cargo test --workspace
+
+# Measures kdray beside its peers on the meshes of a folder and writes a record.
+bench record meshes="../shared/meshes" threads="1,2":
+    cargo run --release -p kdray-bench -- run --definition bench/definitions/peers.toml \
+        --meshes {{ meshes }} --threads {{ threads }} --embree "$(bench/get-embree)" --output {{ record }}
+
+# Prints a record as the README's tables.
+table record:
+    cargo run --release -p kdray-bench -- table {{ record }}
+
+# Builds the documentation of all crates.
+docs:
+    RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace
+
+# Does what CI does.
+ci:
+    .ci/run
