@@ -18,19 +18,20 @@ pub(super) type FindPlane = fn(&[Reference], &Aabb, &NodeCost) -> Option<Plane>;
 
 /// The exact tree, by counting.
 pub(super) fn build(mesh: &Mesh, limits: &Limits, meter: &Meter) -> Result<Growth, BuildError> {
-    build_with(mesh, limits, meter, cheapest_plane)
+    build_with(mesh, limits, meter, (cheapest_plane, 2 * size_of::<f32>()))
 }
 
-/// The exact tree, with planes found by `find_plane`.
+/// The exact tree, with planes found by a function that allocates so many bytes a reference.
 pub(super) fn build_with(
     mesh: &Mesh,
     limits: &Limits,
     meter: &Meter,
-    find_plane: FindPlane,
+    (find_plane, find_bytes): (FindPlane, usize),
 ) -> Result<Growth, BuildError> {
     let references = root_references(mesh);
-    meter.charge("root", size_of_val(&references[..]))?;
-    let mut context = Context { mesh, limits, meter, find_plane, growth: Growth::default() };
+    meter.charge("root", capacity_bytes(&references))?;
+    let growth = Growth::default();
+    let mut context = Context { mesh, limits, meter, find_plane, find_bytes, growth, booked: 0 };
     context.node(references, mesh.bounds(), 0, 1.0)?;
     context.growth.check_size()?;
     Ok(context.growth)
@@ -47,7 +48,14 @@ struct Context<'a> {
     limits: &'a Limits,
     meter: &'a Meter<'a>,
     find_plane: FindPlane,
+    find_bytes: usize,
     growth: Growth,
+    /// Bytes that were booked for the growth.
+    booked: usize,
+}
+
+fn capacity_bytes(references: &Vec<Reference>) -> usize {
+    references.capacity() * size_of::<Reference>()
 }
 
 impl Context<'_> {
@@ -62,19 +70,24 @@ impl Context<'_> {
         self.meter.check_cancelled()?;
         let may_split = depth < self.limits.max_depth && references.len() > self.limits.max_leaf;
         let cost = NodeCost::new(&self.limits.cost, &bounds);
+        let find_bytes = self.find_bytes * references.len();
+        self.meter.charge("sweep", find_bytes)?;
         let plane = if may_split { (self.find_plane)(&references, &bounds, &cost) } else { None };
+        self.meter.release(find_bytes);
         let Some(plane) = plane else {
             let triangles: Vec<u32> = references.iter().map(|r| r.triangle).collect();
             self.growth.push_leaf(&triangles);
             self.meter.advance(share);
-            self.meter.release(size_of_val(&references[..]));
-            return Ok(());
+            self.meter.release(capacity_bytes(&references));
+            let grown = self.growth.capacity_bytes() - self.booked;
+            self.booked += grown;
+            return self.meter.charge("tree", grown);
         };
         let [left_bounds, right_bounds] = bounds.cut(plane.axis, plane.position);
         let left = self.children(&references, &plane, Side::Left, &left_bounds);
         let right = self.children(&references, &plane, Side::Right, &right_bounds);
-        self.meter.charge("split", size_of_val(&left[..]) + size_of_val(&right[..]))?;
-        self.meter.release(size_of_val(&references[..]));
+        self.meter.charge("split", capacity_bytes(&left) + capacity_bytes(&right))?;
+        self.meter.release(capacity_bytes(&references));
         drop(references);
         let place = self.growth.push_inner(plane.axis, plane.position);
         self.node(left, left_bounds, depth + 1, 0.5 * share)?;
@@ -98,7 +111,9 @@ impl Context<'_> {
             }
             reached => (reached == side).then_some(*reference),
         };
-        references.iter().filter_map(reach).collect()
+        let mut children = Vec::with_capacity(references.len());
+        children.extend(references.iter().filter_map(reach));
+        children
     }
 }
 

@@ -9,7 +9,7 @@ use crate::geometry::{Aabb, Mesh};
 
 /// The exact tree, by sorting in every node.
 pub(super) fn build(mesh: &Mesh, limits: &Limits, meter: &Meter) -> Result<Growth, BuildError> {
-    build_with(mesh, limits, meter, cheapest_plane)
+    build_with(mesh, limits, meter, (cheapest_plane, 2 * size_of::<(f32, Kind)>()))
 }
 
 /// Where a reference ends, lies flat or starts along an axis. At one position they come in this

@@ -4,7 +4,8 @@
 ///
 /// The direction need not have unit length: `t` is in units of its length. Coordinates are those
 /// of the mesh ([`Frame::local_ray`](super::Frame::local_ray) makes them from world coordinates).
-/// A ray whose origin or direction is not finite, or whose direction is zero, hits nothing.
+/// A ray hits nothing if it is not finite, or if the largest component of its direction is not in
+/// 1e-21..=1e21: beyond that `t` would leave the range of f32.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Ray {
@@ -32,12 +33,15 @@ impl Ray {
     }
 
     /// Whether the ray can hit anything at all.
+    #[inline]
     pub(crate) fn is_valid(&self) -> bool {
-        let finite = |v: [f32; 3]| v.iter().all(|component| component.is_finite());
-        finite(self.origin)
-            && finite(self.direction)
-            && self.direction != [0.0; 3]
-            && self.t_min <= self.t_max
+        let finite = |v: &[f32; 3]| v[0].is_finite() & v[1].is_finite() & v[2].is_finite();
+        let [x, y, z] = self.direction;
+        let length = x.abs().max(y.abs()).max(z.abs());
+        finite(&self.origin)
+            & finite(&self.direction)
+            & (1e-21..=1e21).contains(&length)
+            & (self.t_min <= self.t_max)
     }
 }
 

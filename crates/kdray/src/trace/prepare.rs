@@ -57,8 +57,9 @@ pub(super) struct Slabs {
 /// largest coordinate in play: three for translating and shearing a corner, and those of `t`.
 const THICKNESS: f32 = 16.0 * 0.5 * f32::EPSILON;
 
-/// Directions are not let be smaller, relative to their largest component.
-const SMALLEST: f32 = 1e-25;
+/// Directions are not let be smaller, relative to their largest component: that moves the ray by
+/// less than a plane is thick, and keeps one over them finite.
+const SMALLEST: f32 = 1e-9;
 
 impl Slabs {
     /// Planes get a thickness that covers every rounding of the triangle tests and of the planes'

@@ -46,13 +46,18 @@ fn subtree(context: &Context, owned: Booked, node: Node) -> Result<Growth, Build
         context.meter.release(owned.bytes);
         return growth;
     };
+    let work_bytes = Workspace::bytes_for(set.triangles.len());
+    context.meter.charge("split", work_bytes)?;
     let mut workspace = Workspace::default();
     let sizes = workspace.assign(&set, &node.bounds, &candidate, &cost, context);
     let children = node.cut(candidate.axis, candidate.position, [sizes.left, sizes.right]);
     let (left, right) = if sizes.is_cut_off() {
+        context.meter.release(work_bytes);
+        drop(workspace);
         cut_off(context, owned, children, sizes)
     } else {
         let [left, right] = split(context, &set, workspace, sizes)?;
+        context.meter.release(work_bytes);
         context.meter.release(owned.bytes);
         drop(owned);
         context
@@ -101,10 +106,12 @@ fn split(
 ) -> Result<[Booked; 2], BuildError> {
     let counts = [sizes.left, sizes.right];
     let bytes = counts.map(OwnedSet::bytes);
-    let work_bytes = workspace.bytes(set.triangles.len());
-    context.meter.charge("split", bytes[0] + bytes[1] + work_bytes)?;
+    context.meter.charge("split", bytes[0] + bytes[1])?;
     let [mut left, mut right] = counts.map(OwnedSet::with_room);
     workspace.name(set, [left.triangles_mut(), right.triangles_mut()]);
+    let straddler_bytes =
+        workspace.bytes().saturating_sub(Workspace::bytes_for(set.triangles.len()));
+    context.meter.charge("clip", straddler_bytes)?;
     let lists = left.events_mut().into_iter().zip(right.events_mut());
     let mut axes: Vec<_> = lists.enumerate().map(|(axis, lists)| (axis, lists, [0; 2])).collect();
     let workspace = &workspace;
@@ -120,7 +127,7 @@ fn split(
     let lengths = [0, 1, 2].map(|axis: usize| axes[axis].2);
     left.truncate(sizes.left, lengths.map(|[left, _]| left));
     right.truncate(sizes.right, lengths.map(|[_, right]| right));
-    context.meter.release(work_bytes);
+    context.meter.release(straddler_bytes);
     let [left_bytes, right_bytes] = bytes;
     Ok([Booked { set: left, bytes: left_bytes }, Booked { set: right, bytes: right_bytes }])
 }

@@ -13,6 +13,8 @@ pub(super) struct Small {
     workspace: Workspace,
     events: Vec<Event>,
     triangles: Vec<u32>,
+    /// Bytes that were booked for the workspace.
+    booked: usize,
 }
 
 /// Scratch holds this many times the lists of the subtree's root. Children and their children need
@@ -30,6 +32,9 @@ pub(super) fn build(context: &Context, set: Set, node: Node) -> Result<Growth, B
     let scratch = Scratch { triangles: &mut small.triangles, events: &mut small.events };
     let mut subtree = Subtree { context, workspace: &mut small.workspace, growth: &mut growth };
     subtree.node(set, node, scratch)?;
+    // The workspace grows with the straddlers, which nobody knew before.
+    context.meter.charge("clip", small.workspace.bytes() - small.booked)?;
+    small.booked = small.workspace.bytes();
     idle().push(small);
     context.meter.charge("tree", growth.capacity_bytes())?;
     context.meter.advance(node.share);

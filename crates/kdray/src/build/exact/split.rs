@@ -51,8 +51,17 @@ impl Sizes {
 }
 
 impl Workspace {
-    /// Bytes that splitting a node of `count` references uses, but for its straddlers.
-    pub(super) fn bytes(&self, count: usize) -> usize {
+    /// Bytes that its lists hold.
+    pub(super) fn bytes(&self) -> usize {
+        let fresh: usize = self.fresh.as_flattened().iter().map(Vec::capacity).sum();
+        self.sides.capacity()
+            + self.names.capacity() * size_of::<u32>()
+            + self.parts.capacity() * size_of::<Parts>()
+            + fresh * size_of::<Event>()
+    }
+
+    /// Bytes that its lists will hold, at least, for a node of `count` references.
+    pub(super) fn bytes_for(count: usize) -> usize {
         count * (size_of::<u8>() + size_of::<u32>())
     }
 
