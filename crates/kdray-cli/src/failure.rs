@@ -50,7 +50,8 @@ mod tests {
     #[test]
     fn causes_are_joined_and_not_repeated() {
         let inner = Err::<(), _>(anyhow::anyhow!("it is a folder"));
-        let error = inner.context("cannot read a.ply: it is a folder").context("input").unwrap_err();
+        let error =
+            inner.context("cannot read a.ply: it is a folder").context("input").unwrap_err();
         assert_eq!(message(&error), "input: cannot read a.ply: it is a folder");
     }
 

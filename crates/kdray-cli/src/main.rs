@@ -22,8 +22,12 @@ use crate::commands::{bench, build, info, render, validate};
 
 /// Exact-SAH kd-trees over triangles: build them, check them, trace rays through them.
 #[derive(Parser)]
-#[command(name = "kdray", version, after_help = "Meshes are PLY, OBJ, STL, OFF, glTF or GLB files.
-Exit status: 0 success, 1 failure, 2 wrong usage, 130 cancelled.")]
+#[command(
+    name = "kdray",
+    version,
+    after_help = "Meshes are PLY, OBJ, STL, OFF, glTF or GLB files.
+Exit status: 0 success, 1 failure, 2 wrong usage, 130 cancelled."
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use kdray::Mesh;
 use serde::Serialize;
 
-/// What a mesh is like as a surface. Vertices at one position count as one.
+/// What a mesh is like as a surface. Vertices at one position count as one, and
+/// triangles that use one twice have no edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Topology {
     /// Triangles without area.
@@ -24,9 +25,10 @@ impl Topology {
         let mut edges: Vec<[u32; 2]> = Vec::with_capacity(3 * mesh.triangles().len());
         for triangle in mesh.triangles() {
             let [a, b, c] = triangle.map(|vertex| welded[vertex as usize]);
-            edges.extend([[a, b], [b, c], [c, a]].map(|[x, y]| [x.min(y), x.max(y)]));
+            if a != b && b != c && c != a {
+                edges.extend([[a, b], [b, c], [c, a]].map(|[x, y]| [x.min(y), x.max(y)]));
+            }
         }
-        edges.retain(|[a, b]| a != b);
         edges.sort_unstable();
         let uses = || edges.chunk_by(|a, b| a == b).map(<[_]>::len);
         let boundary_edges = uses().filter(|uses| *uses == 1).count();

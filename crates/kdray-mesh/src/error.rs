@@ -63,11 +63,7 @@ pub enum Reason {
 
 impl LoadError {
     pub(crate) fn new(place: Place, reason: Reason) -> Self {
-        Self {
-            path: None,
-            place,
-            reason,
-        }
+        Self { path: None, place, reason }
     }
 
     pub(crate) fn malformed(place: Place, reason: impl Into<String>) -> Self {
@@ -96,24 +92,15 @@ impl Place {
     }
 
     pub(crate) fn line(line: usize) -> Self {
-        Self {
-            line: Some(line),
-            ..Self::default()
-        }
+        Self { line: Some(line), ..Self::default() }
     }
 
     pub(crate) fn byte(byte: usize) -> Self {
-        Self {
-            byte: Some(byte),
-            ..Self::default()
-        }
+        Self { byte: Some(byte), ..Self::default() }
     }
 
     pub(crate) fn item(item: impl Into<String>) -> Self {
-        Self {
-            item: Some(item.into()),
-            ..Self::default()
-        }
+        Self { item: Some(item.into()), ..Self::default() }
     }
 
     /// This place, narrowed to an item of the format.
@@ -163,10 +150,7 @@ mod tests {
     #[test]
     fn the_message_names_file_place_and_reason() {
         let place = Place::line(22).at_item("face 0");
-        let reason = Reason::IndexOutOfRange {
-            index: 12,
-            vertices: 8,
-        };
+        let reason = Reason::IndexOutOfRange { index: 12, vertices: 8 };
         let error = LoadError::new(place, reason).in_file("cube.obj");
         assert_eq!(
             error.to_string(),

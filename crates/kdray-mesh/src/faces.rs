@@ -72,20 +72,14 @@ impl Faces {
         match corners.iter().find(|&&index| index as usize >= vertices) {
             None => Ok(()),
             Some(&index) => {
-                let reason = Reason::IndexOutOfRange {
-                    index: index.into(),
-                    vertices,
-                };
+                let reason = Reason::IndexOutOfRange { index: index.into(), vertices };
                 Err(LoadError::new(self.place(face), reason))
             }
         }
     }
 
     fn place(&self, face: usize) -> Place {
-        let place = self
-            .lines
-            .get(face)
-            .map_or(Place::whole(), |&line| Place::line(line));
+        let place = self.lines.get(face).map_or(Place::whole(), |&line| Place::line(line));
         place.at_item(format!("face {face}"))
     }
 }

@@ -48,10 +48,7 @@ impl Format {
     /// ```
     pub fn sniff(bytes: &[u8]) -> Option<Self> {
         let text = bytes.trim_ascii_start();
-        let word_end = text
-            .iter()
-            .position(u8::is_ascii_whitespace)
-            .unwrap_or(text.len());
+        let word_end = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
         let word = &text[..word_end];
         match word {
             b"ply" => Some(Self::Ply),
@@ -68,7 +65,5 @@ impl Format {
 fn has_obj_statement(text: &[u8]) -> bool {
     const LINES: usize = 200;
     let is_statement = |line: &[u8]| line.starts_with(b"v ") || line.starts_with(b"f ");
-    text.split(|&byte| byte == b'\n')
-        .take(LINES)
-        .any(is_statement)
+    text.split(|&byte| byte == b'\n').take(LINES).any(is_statement)
 }

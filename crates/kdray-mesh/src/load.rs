@@ -35,16 +35,10 @@ fn load_file(path: &Path) -> Result<Loaded, LoadError> {
     let bytes =
         fs::read(path).map_err(|error| LoadError::new(Place::whole(), Reason::Io(error)))?;
     let format = Format::from_extension(path).or_else(|| Format::sniff(&bytes));
-    let reason = if bytes.is_empty() {
-        Reason::Empty
-    } else {
-        Reason::UnknownFormat
-    };
+    let reason = if bytes.is_empty() { Reason::Empty } else { Reason::UnknownFormat };
     let format = format.ok_or_else(|| LoadError::new(Place::whole(), reason))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    read_with(&bytes, format, |name, limit| {
-        read_beside(folder, name, limit)
-    })
+    read_with(&bytes, format, |name, limit| read_beside(folder, name, limit))
 }
 
 /// Reads the mesh in `bytes`, which must hold all that it needs.
@@ -59,11 +53,7 @@ fn load_file(path: &Path) -> Result<Loaded, LoadError> {
 /// # Errors
 /// As for [`load`]; and where a glTF file refers to another file.
 pub fn read(bytes: &[u8], format: Format) -> Result<Loaded, LoadError> {
-    let nowhere = |_: &str, _| {
-        Err(io::Error::other(
-            "it is in another file, and none was given",
-        ))
-    };
+    let nowhere = |_: &str, _| Err(io::Error::other("it is in another file, and none was given"));
     read_with(bytes, format, nowhere)
 }
 

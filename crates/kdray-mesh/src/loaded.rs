@@ -39,10 +39,7 @@ impl Loaded {
     /// Positions and polygons made into triangles, every index checked.
     pub(crate) fn from_faces(positions: Vec<[f64; 3]>, faces: &Faces) -> Result<Self, LoadError> {
         check_vertex_count(positions.len())?;
-        let mut loaded = Self {
-            positions,
-            ..Self::default()
-        };
+        let mut loaded = Self { positions, ..Self::default() };
         loaded.triangles = faces.triangles(&loaded.positions, &mut loaded.notes)?;
         Ok(loaded)
     }

@@ -11,10 +11,7 @@ use crate::error::{LoadError, Place, Reason};
 use crate::faces::Faces;
 use crate::text::{Dialect, Scanner, coordinate, quoted};
 
-const DIALECT: Dialect = Dialect {
-    comment: Some(b'#'),
-    continuation: true,
-};
+const DIALECT: Dialect = Dialect { comment: Some(b'#'), continuation: true };
 
 /// Reads an OBJ file.
 pub(crate) fn read(bytes: &[u8]) -> Result<Loaded, LoadError> {
@@ -89,9 +86,7 @@ impl<'a> Obj<'a> {
             .ok_or_else(|| Reason::Malformed(format!("{} is not a corner", quoted(word))))?;
         let resolved = match index {
             0 => {
-                return Err(Reason::Malformed(
-                    "vertex index 0: OBJ counts from 1".into(),
-                ));
+                return Err(Reason::Malformed("vertex index 0: OBJ counts from 1".into()));
             }
             1.. => index - 1,
             _ => index.saturating_add_unsigned(vertices as u64),
@@ -106,10 +101,7 @@ impl<'a> Obj<'a> {
         }
         let mut loaded = Loaded::from_faces(self.positions, &self.faces)?;
         if self.free_form > 0 {
-            loaded.notes.push(format!(
-                "{} free-form curves and surfaces left out",
-                self.free_form
-            ));
+            loaded.notes.push(format!("{} free-form curves and surfaces left out", self.free_form));
         }
         Ok(loaded)
     }
@@ -173,9 +165,7 @@ mod tests {
     #[test]
     fn a_bad_corner_is_named_as_the_file_has_it() {
         let text = format!("{VERTICES}f 1 2 -4\n");
-        let message = read(text.as_bytes())
-            .expect_err("-4 of 3 vertices")
-            .to_string();
+        let message = read(text.as_bytes()).expect_err("-4 of 3 vertices").to_string();
         assert_eq!(
             message,
             "line 4, face 0: vertex index -4 is out of range: there are 3 vertices"

@@ -9,10 +9,7 @@ use crate::error::{LoadError, Place, Reason};
 use crate::faces::Faces;
 use crate::text::{Dialect, Scanner, coordinate, quoted};
 
-const DIALECT: Dialect = Dialect {
-    comment: Some(b'#'),
-    continuation: false,
-};
+const DIALECT: Dialect = Dialect { comment: Some(b'#'), continuation: false };
 
 /// Reads an OFF file.
 pub(crate) fn read(bytes: &[u8]) -> Result<Loaded, LoadError> {
@@ -37,19 +34,13 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Loaded, LoadError> {
 /// The header: a keyword, which can be missing or stuck to the first count, then three counts.
 fn read_counts(scanner: &mut Scanner) -> Result<[usize; 2], LoadError> {
     let first = scanner.word_anywhere().unwrap_or_default();
-    let digits = first
-        .iter()
-        .position(u8::is_ascii_digit)
-        .unwrap_or(first.len());
+    let digits = first.iter().position(u8::is_ascii_digit).unwrap_or(first.len());
     let (keyword, stuck) = first.split_at(digits);
     match keyword {
         b"" | b"OFF" | b"COFF" | b"NOFF" | b"CNOFF" | b"STOFF" | b"STCOFF" | b"STNOFF"
         | b"STCNOFF" => {}
         _ if keyword.ends_with(b"OFF") => {
-            let reason = format!(
-                "{}: vertices of other than three dimensions",
-                quoted(keyword)
-            );
+            let reason = format!("{}: vertices of other than three dimensions", quoted(keyword));
             return Err(LoadError::unsupported(scanner.place(), reason));
         }
         _ => {
@@ -57,11 +48,7 @@ fn read_counts(scanner: &mut Scanner) -> Result<[usize; 2], LoadError> {
             return Err(LoadError::malformed(scanner.place(), reason));
         }
     }
-    let first = if stuck.is_empty() {
-        scanner.word_anywhere()
-    } else {
-        Some(stuck)
-    };
+    let first = if stuck.is_empty() { scanner.word_anywhere() } else { Some(stuck) };
     if first == Some(b"BINARY") {
         return Err(LoadError::unsupported(scanner.place(), "binary OFF"));
     }
@@ -73,9 +60,7 @@ fn read_counts(scanner: &mut Scanner) -> Result<[usize; 2], LoadError> {
 
 fn read_count(word: Option<&[u8]>, scanner: &Scanner) -> Result<usize, LoadError> {
     let word = word.ok_or_else(|| LoadError::truncated(scanner.place(), "a count is missing"))?;
-    let count = std::str::from_utf8(word)
-        .ok()
-        .and_then(|word| word.parse().ok());
+    let count = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
     count.ok_or_else(|| {
         LoadError::malformed(scanner.place(), format!("{} is not a count", quoted(word)))
     })
@@ -90,10 +75,7 @@ fn check_claim(
 ) -> Result<(), LoadError> {
     let left = scanner.left();
     // The last line end can be missing.
-    if count
-        .checked_mul(least)
-        .is_some_and(|bytes| bytes <= left + 1)
-    {
+    if count.checked_mul(least).is_some_and(|bytes| bytes <= left + 1) {
         return Ok(());
     }
     let reason = format!("{count} {items} are announced, but {left} bytes are left");
@@ -121,14 +103,9 @@ fn read_face(scanner: &mut Scanner, vertices: usize, faces: &mut Faces) -> Resul
     let mut indices = Vec::with_capacity(corners);
     for _ in 0..corners {
         let word = scanner.word_anywhere().unwrap_or_default();
-        let index = std::str::from_utf8(word)
-            .ok()
-            .and_then(|word| word.parse::<i64>().ok());
+        let index = std::str::from_utf8(word).ok().and_then(|word| word.parse::<i64>().ok());
         let Some(index) = index else {
-            return Err(LoadError::malformed(
-                place(),
-                format!("{} is not an index", quoted(word)),
-            ));
+            return Err(LoadError::malformed(place(), format!("{} is not an index", quoted(word))));
         };
         let fits = u32::try_from(index);
         indices.push(
@@ -147,26 +124,13 @@ mod tests {
     #[test]
     fn headers_of_every_kind() {
         let body = "0 0 0 9 9\n1 0 0 # a comment\n\n0 1 0\n3 0 1 2 0.5 0.5 0.5\n";
-        for header in [
-            "OFF\n3 1 0\n",
-            "OFF 3 1 3\n",
-            "OFF3 1 0\n",
-            "# c\nSTCNOFF\n# c\n3 1 0\n",
-            "3 1 0\n",
-        ] {
+        for header in
+            ["OFF\n3 1 0\n", "OFF 3 1 3\n", "OFF3 1 0\n", "# c\nSTCNOFF\n# c\n3 1 0\n", "3 1 0\n"]
+        {
             let loaded = read(format!("{header}{body}").as_bytes()).expect(header);
-            assert_eq!(
-                (loaded.positions.len(), loaded.triangles.len()),
-                (3, 1),
-                "{header}"
-            );
+            assert_eq!((loaded.positions.len(), loaded.triangles.len()), (3, 1), "{header}");
         }
-        for header in [
-            "4OFF\n3 1 0\n",
-            "nOFF 4\n3 1 0\n",
-            "OFF BINARY\n3 1 0\n",
-            "FOO\n3 1 0\n",
-        ] {
+        for header in ["4OFF\n3 1 0\n", "nOFF 4\n3 1 0\n", "OFF BINARY\n3 1 0\n", "FOO\n3 1 0\n"] {
             read(format!("{header}{body}").as_bytes()).expect_err(header);
         }
     }

@@ -59,13 +59,7 @@ impl Triangulator {
     fn project(&mut self, corners: &[u32], positions: &[[f64; 3]]) -> bool {
         let normal = newell_normal(corners, positions);
         let magnitude = normal.map(f64::abs);
-        let axis = (0..3).fold(0, |best, k| {
-            if magnitude[k] > magnitude[best] {
-                k
-            } else {
-                best
-            }
-        });
+        let axis = (0..3).fold(0, |best, k| if magnitude[k] > magnitude[best] { k } else { best });
         if !(magnitude[axis] > 0.0 && normal.iter().all(|n| n.is_finite())) {
             return false;
         }
@@ -75,10 +69,7 @@ impl Triangulator {
         }
         let point = |&corner: &u32| {
             let position = positions[corner as usize];
-            Coord {
-                x: position[across],
-                y: position[up],
-            }
+            Coord { x: position[across], y: position[up] }
         };
         self.points.clear();
         self.points.extend(corners.iter().map(point));
@@ -157,9 +148,7 @@ impl Triangulator {
     /// Whether the point is in the triangle or on its border, but is not one of its corners.
     fn is_inside(&self, point: usize, triangle: [usize; 3]) -> bool {
         let [a, b, c] = triangle;
-        let is_corner = triangle
-            .iter()
-            .any(|&k| self.points[k] == self.points[point]);
+        let is_corner = triangle.iter().any(|&k| self.points[k] == self.points[point]);
         !is_corner
             && self.turn(a, b, point) >= 0.0
             && self.turn(b, c, point) >= 0.0
@@ -170,11 +159,9 @@ impl Triangulator {
     fn link(&mut self) {
         let count = self.points.len();
         self.next.clear();
-        self.next
-            .extend((0..count).map(|corner| (corner + 1) % count));
+        self.next.extend((0..count).map(|corner| (corner + 1) % count));
         self.previous.clear();
-        self.previous
-            .extend((0..count).map(|corner| (corner + count - 1) % count));
+        self.previous.extend((0..count).map(|corner| (corner + count - 1) % count));
         self.reflex.clear();
         self.reflex.resize(count, false);
         (0..count).for_each(|corner| self.update_reflex(corner));
@@ -194,10 +181,7 @@ impl Triangulator {
 
     fn edge(&self, from: usize, to: usize) -> Coord<f64> {
         let (from, to) = (self.points[from], self.points[to]);
-        Coord {
-            x: to.x - from.x,
-            y: to.y - from.y,
-        }
+        Coord { x: to.x - from.x, y: to.y - from.y }
     }
 
     /// Twice the area of a triangle, positive when it turns left; its sign is exact.

@@ -20,11 +20,7 @@ const RECORD: usize = 50;
 
 /// Reads an STL file.
 pub(crate) fn read(bytes: &[u8]) -> Result<Loaded, LoadError> {
-    if !looks_binary(bytes) && looks_ascii(bytes) {
-        read_ascii(bytes)
-    } else {
-        read_binary(bytes)
-    }
+    if !looks_binary(bytes) && looks_ascii(bytes) { read_ascii(bytes) } else { read_binary(bytes) }
 }
 
 /// Whether the length is that of a binary file with its count.
@@ -73,9 +69,7 @@ fn read_binary(bytes: &[u8]) -> Result<Loaded, LoadError> {
     let mut loaded = welded.finish()?;
     let surplus = records.len() - count as usize * RECORD;
     if surplus > 0 {
-        loaded
-            .notes
-            .push(format!("{surplus} bytes after the last triangle left out"));
+        loaded.notes.push(format!("{surplus} bytes after the last triangle left out"));
     }
     Ok(loaded)
 }
@@ -108,9 +102,7 @@ fn read_ascii(bytes: &[u8]) -> Result<Loaded, LoadError> {
         }
     }
     if loop_line.is_some() {
-        let place = scanner
-            .place()
-            .at_item(format!("facet {}", welded.faces.len()));
+        let place = scanner.place().at_item(format!("facet {}", welded.faces.len()));
         return Err(LoadError::truncated(place, "the facet has no endloop"));
     }
     welded.finish()

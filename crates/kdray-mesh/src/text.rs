@@ -21,12 +21,7 @@ pub(crate) struct Scanner<'a> {
 
 impl<'a> Scanner<'a> {
     pub(crate) fn new(bytes: &'a [u8], dialect: Dialect) -> Self {
-        Self {
-            bytes,
-            at: 0,
-            line: 1,
-            dialect,
-        }
+        Self { bytes, at: 0, line: 1, dialect }
     }
 
     /// Where the next byte to read is.
@@ -78,11 +73,7 @@ impl<'a> Scanner<'a> {
 
     /// Goes to the start of the next line; false when there is none.
     pub(crate) fn next_line(&mut self) -> bool {
-        while self
-            .bytes
-            .get(self.at)
-            .is_some_and(|byte| !is_line_end(*byte))
-        {
+        while self.bytes.get(self.at).is_some_and(|byte| !is_line_end(*byte)) {
             self.at += 1;
         }
         self.end_line();
@@ -104,10 +95,7 @@ impl<'a> Scanner<'a> {
     fn is_continued(&self, at: usize) -> bool {
         self.dialect.continuation
             && self.bytes[at] == b'\\'
-            && self
-                .bytes
-                .get(at + 1)
-                .is_some_and(|byte| is_line_end(*byte))
+            && self.bytes.get(at + 1).is_some_and(|byte| is_line_end(*byte))
     }
 
     /// Steps over one line end.
@@ -143,10 +131,7 @@ pub(crate) fn coordinate(word: Option<&[u8]>, place: Place) -> Result<f64, LoadE
 pub(crate) fn quoted(word: &[u8]) -> String {
     const LONGEST: usize = 40;
     let dots = if word.len() > LONGEST { "..." } else { "" };
-    format!(
-        "\"{}{dots}\"",
-        word[..word.len().min(LONGEST)].escape_ascii()
-    )
+    format!("\"{}{dots}\"", word[..word.len().min(LONGEST)].escape_ascii())
 }
 
 #[cfg(test)]
@@ -155,10 +140,7 @@ mod tests {
 
     #[test]
     fn words_lines_comments_and_continuations() {
-        let dialect = Dialect {
-            comment: Some(b'#'),
-            continuation: true,
-        };
+        let dialect = Dialect { comment: Some(b'#'), continuation: true };
         let mut scanner = Scanner::new(b"f 1\\\r\n2 \\\n 3#4 # rest\rg\n\n", dialect);
         let mut words = Vec::new();
         while let Some(word) = scanner.word() {

@@ -11,11 +11,7 @@ fn document(nodes: Value, primitives: Value, accessors: Value) -> Value {
     // At byte 48: 8-bit indices; at 56: 16-bit indices; at 64: one position for sparse accessors.
     bytes.extend([0, 1, 2, 3, 2, 1, 9, 9]);
     bytes.extend([0, 0, 1, 0, 2, 0, 3, 0]);
-    bytes.extend(
-        [5.0, 6.0, 7.0_f32]
-            .iter()
-            .flat_map(|value| value.to_le_bytes()),
-    );
+    bytes.extend([5.0, 6.0, 7.0_f32].iter().flat_map(|value| value.to_le_bytes()));
     let content: String = bytes.iter().map(|byte| format!("%{byte:02x}")).collect();
     json!({
         "asset": {"version": "2.0"},
@@ -41,11 +37,7 @@ fn load(document: &Value) -> Result<Loaded, String> {
 
 /// A document of one primitive under the given nodes.
 fn scene(nodes: Value) -> Value {
-    document(
-        nodes,
-        json!([{"attributes": {"POSITION": 0}, "mode": 5}]),
-        json!([square()]),
-    )
+    document(nodes, json!([{"attributes": {"POSITION": 0}, "mode": 5}]), json!([square()]))
 }
 
 #[test]
@@ -59,11 +51,7 @@ fn every_mode_and_index_type() {
     ] {
         let primitive = json!([{"attributes": {"POSITION": 0}, "mode": mode, "indices": 1}]);
         let loaded = load(&document(json!([]), primitive, json!([square(), accessor])));
-        assert_eq!(
-            loaded.expect("a sound document").triangles,
-            expected,
-            "mode {mode}"
-        );
+        assert_eq!(loaded.expect("a sound document").triangles, expected, "mode {mode}");
     }
 }
 
@@ -76,28 +64,14 @@ fn transforms_nest_and_mirrors_turn_triangles() {
     ]);
     let loaded = load(&scene(nodes)).expect("a sound document");
     // (1, 0) becomes (-2, 0), then turns to (0, -2); (0, 1) becomes (0, 3), then (-3, 0).
-    let expected = [
-        [10.0, 0.0, 1e7],
-        [10.0, -2.0, 1e7],
-        [7.0, 0.0, 1e7],
-        [7.0, -2.0, 1e7],
-    ];
-    for (found, expected) in loaded
-        .positions
-        .iter()
-        .flatten()
-        .zip(expected.as_flattened())
-    {
+    let expected = [[10.0, 0.0, 1e7], [10.0, -2.0, 1e7], [7.0, 0.0, 1e7], [7.0, -2.0, 1e7]];
+    for (found, expected) in loaded.positions.iter().flatten().zip(expected.as_flattened()) {
         assert!((found - expected).abs() < 1e-8, "{found} {expected}");
     }
     assert_eq!(loaded.triangles, [[0, 2, 1], [1, 2, 3]]);
     let matrix = json!([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [4, 5, 6, 1]]);
-    let flat: Vec<&Value> = matrix
-        .as_array()
-        .unwrap()
-        .iter()
-        .flat_map(|c| c.as_array().unwrap())
-        .collect();
+    let flat: Vec<&Value> =
+        matrix.as_array().unwrap().iter().flat_map(|c| c.as_array().unwrap()).collect();
     let loaded = load(&scene(json!([{"mesh": 0, "matrix": flat}]))).expect("a sound document");
     assert_eq!(loaded.positions[3], [5.0, 6.0, 6.0]);
 }
@@ -109,26 +83,15 @@ fn only_the_default_scene_counts_and_instances_repeat() {
     document["scenes"] = json!([{"nodes": [0, 1]}, {"nodes": [2]}]);
     assert_eq!(load(&document).expect("the first scene").triangles.len(), 4);
     document["scene"] = json!(1);
-    assert_eq!(
-        load(&document).expect("the second scene").triangles.len(),
-        2
-    );
+    assert_eq!(load(&document).expect("the second scene").triangles.len(), 2);
     document["scene"] = json!(2);
-    assert!(
-        load(&document)
-            .expect_err("no such scene")
-            .contains("scene 2")
-    );
+    assert!(load(&document).expect_err("no such scene").contains("scene 2"));
 }
 
 #[test]
 fn primitives_share_the_vertices_of_one_accessor() {
     let primitive = json!({"attributes": {"POSITION": 0}, "mode": 5});
-    let loaded = load(&document(
-        json!([]),
-        json!([primitive, primitive]),
-        json!([square()]),
-    ));
+    let loaded = load(&document(json!([]), json!([primitive, primitive]), json!([square()])));
     assert_eq!(loaded.expect("a sound document").positions.len(), 4);
 }
 
@@ -148,10 +111,7 @@ fn sparse_and_quantised_accessors() {
     let mut document = document(json!([]), primitive, json!([quantised]));
     document["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
     let expected = [[3.0 / 255.0, 2.0 / 255.0, 1.0 / 255.0]];
-    assert_eq!(
-        load(&document).expect("a sound document").positions,
-        expected
-    );
+    assert_eq!(load(&document).expect("a sound document").positions, expected);
 }
 
 #[test]
@@ -170,10 +130,7 @@ fn bad_graphs_and_needs_are_refused_with_a_reason() {
         (old, "version 1.0"),
         (scene(json!([{"mesh": 7}])), "mesh 7"),
         (scene(json!([{"children": [9]}])), "node 9"),
-        (
-            scene(json!([{"mesh": 0, "rotation": [0, 0, 0, 0]}])),
-            "node 0",
-        ),
+        (scene(json!([{"mesh": 0, "rotation": [0, 0, 0, 0]}])), "node 0"),
     ] {
         let message = load(&document).expect_err(reason);
         assert!(message.contains(reason), "{message}");

@@ -26,13 +26,7 @@ fn assert_sound(bytes: &[u8], format: Format) {
     match read(bytes, format) {
         Ok(loaded) => {
             let vertices = loaded.positions.len() as u32;
-            assert!(
-                loaded
-                    .triangles
-                    .iter()
-                    .flatten()
-                    .all(|&index| index < vertices)
-            );
+            assert!(loaded.triangles.iter().flatten().all(|&index| index < vertices));
             // A triangle takes a byte at least; but glTF has zeros without bytes, within a limit.
             assert!(loaded.triangles.len() <= bytes.len() + 65_536);
         }
@@ -110,26 +104,14 @@ fn false_claims() -> Vec<(Format, Vec<u8>)> {
         (Format::Ply, ply("ascii", &huge_vertices)),
         (Format::Ply, ply("binary_little_endian", &huge_vertices)),
         (Format::Ply, ply("binary_big_endian", &huge_list)),
-        (
-            Format::Ply,
-            ply("ascii", &huge_list.replace("end_header", "")),
-        ),
-        (
-            Format::Off,
-            b"OFF\n3 900000000000 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n".to_vec(),
-        ),
-        (
-            Format::Off,
-            b"OFF\n1 1 0\n0 0 0\n18446744073709551615 0\n".to_vec(),
-        ),
+        (Format::Ply, ply("ascii", &huge_list.replace("end_header", ""))),
+        (Format::Off, b"OFF\n3 900000000000 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n".to_vec()),
+        (Format::Off, b"OFF\n1 1 0\n0 0 0\n18446744073709551615 0\n".to_vec()),
         (Format::Stl, stl),
         (Format::Gltf, gltf(r#""count":18446744073709551615"#)),
         (Format::Gltf, gltf(r#""bufferView":0,"count":1"#)),
         (Format::Gltf, gltf(r#""bufferView":1,"count":3"#)),
-        (
-            Format::Gltf,
-            b"glTF\x02\0\0\0\x14\0\0\0\xff\xff\xff\xffJSON".to_vec(),
-        ),
+        (Format::Gltf, b"glTF\x02\0\0\0\x14\0\0\0\xff\xff\xff\xffJSON".to_vec()),
     ]
 }
 
@@ -147,11 +129,5 @@ fn false_claims_are_refused_at_once() {
 fn an_element_without_properties_takes_no_time() {
     let ply = b"ply\nformat binary_little_endian 1.0\nelement nothing 18000000000000000000\n\
         element vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-    assert_eq!(
-        read(ply, Format::Ply)
-            .expect("an empty mesh")
-            .positions
-            .len(),
-        0
-    );
+    assert_eq!(read(ply, Format::Ply).expect("an empty mesh").positions.len(), 0);
 }

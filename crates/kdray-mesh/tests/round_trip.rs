@@ -12,12 +12,8 @@ type Writer = fn(&Polygons) -> Vec<u8>;
 /// Formats that keep indices, and can have polygons or not.
 const INDEXED: [(&str, Format, bool, Writer); 7] = [
     ("ASCII PLY", Format::Ply, true, support::ply_ascii),
-    ("little-endian PLY", Format::Ply, true, |mesh| {
-        support::ply_binary(mesh, false)
-    }),
-    ("big-endian PLY", Format::Ply, true, |mesh| {
-        support::ply_binary(mesh, true)
-    }),
+    ("little-endian PLY", Format::Ply, true, |mesh| support::ply_binary(mesh, false)),
+    ("big-endian PLY", Format::Ply, true, |mesh| support::ply_binary(mesh, true)),
     ("OBJ", Format::Obj, true, support::obj),
     ("OFF", Format::Off, true, support::off),
     ("glTF", Format::Gltf, false, support::gltf),
@@ -25,17 +21,12 @@ const INDEXED: [(&str, Format, bool, Writer); 7] = [
 ];
 
 /// Formats that only know positions.
-const LOOSE: [(&str, Writer); 2] = [
-    ("ASCII STL", support::stl_ascii),
-    ("binary STL", support::stl_binary),
-];
+const LOOSE: [(&str, Writer); 2] =
+    [("ASCII STL", support::stl_ascii), ("binary STL", support::stl_binary)];
 
 fn corners(mesh: &Loaded) -> Vec<[[f64; 3]; 3]> {
     let corner = |index: u32| mesh.positions[index as usize];
-    mesh.triangles
-        .iter()
-        .map(|triangle| triangle.map(corner))
-        .collect()
+    mesh.triangles.iter().map(|triangle| triangle.map(corner)).collect()
 }
 
 fn assert_round_trip(mesh: &Loaded) {
@@ -90,12 +81,9 @@ fn polygons_become_the_same_triangles_in_every_format() {
         ],
         faces: vec![vec![0, 1, 2, 3, 4], vec![0, 5, 1], vec![1, 5, 2, 3]],
     };
-    let formats = INDEXED
-        .iter()
-        .filter(|(_, _, has_polygons, _)| *has_polygons);
-    let all: Vec<Loaded> = formats
-        .map(|(name, format, _, write)| read(&write(&mesh), *format).expect(name))
-        .collect();
+    let formats = INDEXED.iter().filter(|(_, _, has_polygons, _)| *has_polygons);
+    let all: Vec<Loaded> =
+        formats.map(|(name, format, _, write)| read(&write(&mesh), *format).expect(name)).collect();
     assert_eq!(all[0].triangles.len(), 6);
     assert!(all.iter().all(|loaded| loaded == &all[0]));
 }
@@ -109,28 +97,16 @@ fn a_gltf_file_finds_its_buffer_beside_it_only() {
     let buffer = support::gltf_buffer(&polygons);
     std::fs::write(folder.join("my parts/one.bin"), buffer).expect("a writable folder");
     let mut results = Vec::new();
-    for uri in [
-        "my%20parts/one.bin",
-        "./../one.bin",
-        "/etc/hosts",
-        "http://a/b.bin",
-        "none.bin",
-    ] {
+    for uri in ["my%20parts/one.bin", "./../one.bin", "/etc/hosts", "http://a/b.bin", "none.bin"] {
         let path = folder.join("mesh.gltf");
         std::fs::write(&path, support::gltf_document(&polygons, uri)).expect("a writable folder");
         results.push(load(&path).map_err(|error| error.to_string()));
     }
     std::fs::remove_dir_all(&folder).expect("a writable folder");
     assert_eq!(results[0].as_ref(), Ok(&mesh));
-    for (result, reason) in results[1..]
-        .iter()
-        .zip(["outside", "outside", "remote", "none.bin"])
-    {
+    for (result, reason) in results[1..].iter().zip(["outside", "outside", "remote", "none.bin"]) {
         let message = result.as_ref().expect_err(reason);
-        assert!(
-            message.contains("mesh.gltf: buffer 0") && message.contains(reason),
-            "{message}"
-        );
+        assert!(message.contains("mesh.gltf: buffer 0") && message.contains(reason), "{message}");
     }
 }
 
@@ -145,10 +121,7 @@ fn base64_data_uris_are_read() {
         "bufferViews":[{{"buffer":0,"byteLength":36}}],"buffers":[{{"byteLength":36,"uri":"{uri}"}}]}}"#
     );
     let loaded = read(json.as_bytes(), Format::Gltf).expect("a sound document");
-    assert_eq!(
-        loaded.positions,
-        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]]
-    );
+    assert_eq!(loaded.positions, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
 }
 
 proptest! {

@@ -44,9 +44,9 @@ impl Camera {
     pub fn framing_mesh(mesh: &Mesh, up: [f32; 3], aspect: f32) -> Self {
         let upward = vertical(up);
         let heights = corners(&mesh.bounds()).map(|corner| corner.dot(upward));
-        let [low, high] = heights.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], y| {
-            [y.min(low), y.max(high)]
-        });
+        let [low, high] = heights
+            .iter()
+            .fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], y| [y.min(low), y.max(high)]);
         let foot = low + FOOT * (high - low);
         let corners = (0..mesh.triangles().len()).map(|index| mesh.triangle(index).map(Vec3::from));
         let stands = |triangle: &[Vec3; 3]| triangle.iter().any(|corner| corner.dot(upward) > foot);
@@ -111,7 +111,8 @@ impl Lens {
     /// than that of the eye. So the eye is where the tightest such plane meets its counterpart.
     fn place_for(&self, points: &[Vec3]) -> Vec3 {
         let z = |point: Vec3| point.dot(self.forward);
-        let most = |of: &dyn Fn(Vec3) -> f32| points.iter().map(|p| of(*p)).fold(f32::MIN, f32::max);
+        let most =
+            |of: &dyn Fn(Vec3) -> f32| points.iter().map(|p| of(*p)).fold(f32::MIN, f32::max);
         let nearest = -most(&|point| -z(point));
         let size = points.iter().map(|point| point.distance(points[0])).fold(0.0, f32::max);
         let mut depth = nearest - if size > 0.0 { 0.05 * size } else { 1.0 };
@@ -140,9 +141,8 @@ fn vertical(up: [f32; 3]) -> Vec3 {
 
 fn corners(bounds: &Aabb) -> [Vec3; 8] {
     let ends = [bounds.lower, bounds.upper];
-    [0, 1, 2, 3, 4, 5, 6, 7].map(|corner: usize| {
-        Vec3::from([0, 1, 2].map(|axis| ends[corner >> axis & 1][axis]))
-    })
+    [0, 1, 2, 3, 4, 5, 6, 7]
+        .map(|corner: usize| Vec3::from([0, 1, 2].map(|axis| ends[corner >> axis & 1][axis])))
 }
 
 #[cfg(test)]

@@ -89,12 +89,11 @@ impl Filter<'_> {
     /// Variance is noisy too: its mean over 3 x 3 pixels.
     fn smooth_variance(&self, index: usize) -> f32 {
         let (mut sum, mut count) = (0.0, 0.0_f32);
-        for (dy, dx) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dy, dx))) {
-            if let Some(index) = self.offset(index, [dx, dy]) {
-                if self.film.pixels[index].cover > 0.0 {
-                    sum += self.light[index].variance;
-                    count += 1.0;
-                }
+        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [dx, dy]));
+        for index in around.filter_map(|offset| self.offset(index, offset)) {
+            if self.film.pixels[index].cover > 0.0 {
+                sum += self.light[index].variance;
+                count += 1.0;
             }
         }
         sum / count.max(1.0)

@@ -203,7 +203,8 @@ mod tests {
     #[test]
     fn a_pixel_keeps_the_light_of_all_and_the_surface_of_the_first() {
         let miss = Sample { light: Vec3::splat(4.0), surface: None };
-        let samples = [miss, sample(1.0, 0.0, Vec3::Y), sample(2.0, 0.0, Vec3::Y), sample(9.0, 7.0, Vec3::X)];
+        let samples =
+            [miss, sample(1.0, 0.0, Vec3::Y), sample(2.0, 0.0, Vec3::Y), sample(9.0, 7.0, Vec3::X)];
         let pixel = Pixel::mean(samples.into_iter());
         assert_eq!((pixel.light, pixel.cover), (Vec3::splat(4.0), 0.5));
         assert_eq!((pixel.irradiance, pixel.surface.normal), (Vec3::splat(3.0), Vec3::Y));

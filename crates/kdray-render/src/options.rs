@@ -81,7 +81,8 @@ impl RenderOptions<'_> {
     pub fn samples(&self) -> u32 {
         let suitable = match self.shading {
             Shading::Normals | Shading::Cost => 4,
-            Shading::Ao | Shading::Path => 16,
+            Shading::Path => 8,
+            Shading::Ao => 16,
         };
         self.samples.unwrap_or(suitable).max(1)
     }

@@ -99,3 +99,50 @@ fn linear(srgb: u32) -> Vec3 {
     };
     Vec3::new(channel(16), channel(8), channel(0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::weld::weld;
+
+    /// Separate right-angled triangles, each with its own size, standing or lying at its height.
+    fn palette(parts: &[(f32, f32, bool)]) -> Palette {
+        let corners = parts.iter().enumerate().flat_map(|(index, (size, height, stands))| {
+            let at = [100.0 * index as f32, *height, 0.0];
+            let last = if *stands { [at[0], height + size, 0.0] } else { [at[0], *height, *size] };
+            [at, [at[0] + size, *height, 0.0], last]
+        });
+        let positions: Vec<[f32; 3]> = corners.collect();
+        let triangles: Vec<[u32; 3]> =
+            (0..parts.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let mesh = Mesh::new(&positions, &triangles).expect("finite");
+        Palette::new(&mesh, &Components::new(&mesh, &weld(&mesh)), Vec3::Y)
+    }
+
+    #[test]
+    fn floors_things_and_small_parts_differ() {
+        let floor = (50.0, 0.0, false);
+        let palette = palette(&[(9.0, 0.0, true), floor, (8.0, 0.0, true), (0.1, 3.0, true)]);
+        assert_eq!(palette.of(0), linear(PARTS[0]));
+        assert_eq!(palette.of(1), palette.ground());
+        assert_eq!(palette.of(2), linear(PARTS[1]));
+        let [from, to] = SMALL_PARTS.map(linear);
+        assert!(palette.of(3).cmpge(from.min(to)).all() && palette.of(3).cmple(from.max(to)).all());
+    }
+
+    #[test]
+    fn buildings_are_of_stone() {
+        let palette = palette(&[(9.0, 0.0, true); 20]);
+        let [from, to] = STONES.map(linear);
+        for triangle in 0..20 {
+            let colour = palette.of(triangle);
+            assert!(colour.cmpge(from.min(to)).all() && colour.cmple(from.max(to)).all());
+        }
+    }
+
+    #[test]
+    fn srgb_is_decoded() {
+        assert_eq!(linear(0xff_00_ff), Vec3::new(1.0, 0.0, 1.0));
+        assert!((linear(0x80_80_80).x - 0.2159).abs() < 1e-3);
+    }
+}

@@ -18,12 +18,11 @@ pub(crate) struct Sampler {
 
 impl Sampler {
     /// The most samples that differ from each other.
-    #[cfg(test)]
     const MOST_SAMPLES: u32 = 1 << (32 - 2 * CURVE_BITS);
 
     /// Of `sample` out of `samples`.
     pub(crate) fn new([x, y]: [u32; 2], sample: u32, samples: u32) -> Self {
-        let sample_bits = samples.max(1).next_power_of_two().ilog2().min(32 - 2 * CURVE_BITS);
+        let sample_bits = samples.clamp(1, Self::MOST_SAMPLES).next_power_of_two().ilog2();
         let mask = (1 << CURVE_BITS) - 1;
         let along = spread(x & mask) | spread(y & mask) << 1;
         Self {
@@ -65,7 +64,7 @@ impl Sampler {
 /// One of the 24 orders of four, applied to a digit.
 fn permute4(digit: u32, random: u32) -> u32 {
     const ORDERS: [[u8; 4]; 24] = orders_of_four();
-    u32::from(ORDERS[((random >> 8) * 24 >> 24) as usize][digit as usize])
+    u32::from(ORDERS[(((random >> 8) * 24) >> 24) as usize][digit as usize])
 }
 
 const fn orders_of_four() -> [[u8; 4]; 24] {

@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn the_transfer_curve_is_that_of_srgb() {
-        let encoded = encode(Vec3::new(0.0, 0.214_041, 1.0));
+        let encoded = encode(Vec3::new(0.0, 0.215_861, 1.0));
         assert_eq!(encoded, [0, 128, 255]);
         assert_eq!(encode(Vec3::new(f32::NAN, -1.0, 9.0)), [0, 0, 255]);
     }

@@ -87,7 +87,10 @@ impl TreeFigures {
             ("references", format!("{}, {per_triangle:.2} a triangle", count(self.references))),
             ("tree", format!("{size}, {:.1} bytes a triangle", self.bytes_per_triangle)),
             ("SAH cost", format!("{:.2} ({prices})", self.sah_cost)),
-            ("a ray meets", format!("{inner:.1} inner nodes, {leaf:.1} leaves, {tests:.1} references")),
+            (
+                "a ray meets",
+                format!("{inner:.1} inner nodes, {leaf:.1} leaves, {tests:.1} references"),
+            ),
         ]
     }
 

@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     /// How surfaces are shaded
     #[arg(long, value_enum, default_value_t)]
     shading: Shading,
-    /// Samples a pixel [default: 4 for normals and cost, 16 for ao and path]
+    /// Samples a pixel [default: 4 for normals and cost, 8 for path, 16 for ao]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16_384))]
     spp: Option<u32>,
     /// Reflections that a light path makes at most
@@ -136,11 +136,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn build(
-    mesh: &Mesh,
-    arguments: &Arguments,
-    cancel: &AtomicBool,
-) -> anyhow::Result<(Tracer, f64)> {
+fn build(mesh: &Mesh, arguments: &Arguments, cancel: &AtomicBool) -> anyhow::Result<(Tracer, f64)> {
     let progress = Progress::new("building");
     let options = BuildOptions {
         builder: arguments.build.builder.builder(),
@@ -241,10 +237,18 @@ impl Report {
     fn text(&self) -> String {
         let mut text = String::new();
         let triangles = count(self.triangles);
-        let _ = writeln!(text, "{}: {triangles} triangles, tree built in {:.3} s", self.mesh, self.build_s);
+        let _ = writeln!(
+            text,
+            "{}: {triangles} triangles, tree built in {:.3} s",
+            self.mesh, self.build_s
+        );
         let speed = self.rays as f64 / self.trace_s.max(1e-9) / 1e6;
         let rays = count(self.rays as usize);
-        let _ = writeln!(text, "{rays} rays in {:.2} s, shading included: {speed:.2} million a second", self.trace_s);
+        let _ = writeln!(
+            text,
+            "{rays} rays in {:.2} s, shading included: {speed:.2} million a second",
+            self.trace_s
+        );
         let _ = writeln!(text, "{} ({} x {})", self.image, self.width, self.height);
         text
     }

@@ -11,9 +11,7 @@ use crate::Loaded;
 /// ```
 pub fn grid(n: usize) -> Loaded {
     let mut mesh = Loaded::default();
-    add_sheet(&mut mesh, [n, n], [Ends::Open; 2], |u, v| {
-        [2.0 * u - 1.0, 0.0, 1.0 - 2.0 * v]
-    });
+    add_sheet(&mut mesh, [n, n], [Ends::Open; 2], |u, v| [2.0 * u - 1.0, 0.0, 1.0 - 2.0 * v]);
     mesh
 }
 

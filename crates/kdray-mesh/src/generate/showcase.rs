@@ -38,13 +38,8 @@ pub fn showcase(triangles: usize) -> Loaded {
 pub(super) type Piece = fn(&mut Loaded, usize);
 
 /// The pieces that stand on the floor, and their parts of the triangles in percent.
-const PIECES: [(usize, Piece); 5] = [
-    (26, add_gourd),
-    (26, add_trefoil),
-    (12, add_gear),
-    (9, add_rounded_cube),
-    (8, add_bowl),
-];
+const PIECES: [(usize, Piece); 5] =
+    [(26, add_gourd), (26, add_trefoil), (12, add_gear), (9, add_rounded_cube), (8, add_bowl)];
 
 /// Columns and rows of a sheet of at most `triangles`, with about `aspect` columns a row.
 ///
@@ -57,10 +52,7 @@ fn cells(triangles: usize, aspect: f64) -> Option<[usize; 2]> {
 
 /// Lowers or lifts a piece until it touches the floor.
 fn rest_on_floor(points: &mut [Vector]) {
-    let lowest = points
-        .iter()
-        .map(|point| point[1])
-        .fold(f64::INFINITY, f64::min);
+    let lowest = points.iter().map(|point| point[1]).fold(f64::INFINITY, f64::min);
     for point in points {
         point[1] = f64::from((point[1] - lowest) as f32);
     }
@@ -75,11 +67,7 @@ fn direction(u: f64, v: f64) -> Vector {
 /// `point` turned around the y axis by so many turns.
 fn turned(point: Vector, turns: f64) -> Vector {
     let (sin, cos) = sin_cos(turns);
-    [
-        cos * point[0] + sin * point[2],
-        point[1],
-        cos * point[2] - sin * point[0],
-    ]
+    [cos * point[0] + sin * point[2], point[1], cos * point[2] - sin * point[0]]
 }
 
 /// Large triangles: the floor.
@@ -107,21 +95,10 @@ fn add_lattice(mesh: &mut Loaded, bars: usize) {
     }
     let depth = [0.0, 0.0, HALF];
     for side in [-1.0, 1.0] {
-        let (rail, post) = (
-            [0.0, side * HEIGHT / 2.0, 0.0],
-            [side * WIDTH / 2.0, 0.0, 0.0],
-        );
+        let (rail, post) = ([0.0, side * HEIGHT / 2.0, 0.0], [side * WIDTH / 2.0, 0.0, 0.0]);
         let middle = [0.0, HEIGHT / 2.0 + HALF, DEPTH];
-        add_box(
-            mesh,
-            add(middle, rail),
-            [[WIDTH / 2.0, 0.0, 0.0], [0.0, HALF, 0.0], depth],
-        );
-        add_box(
-            mesh,
-            add(middle, post),
-            [[HALF, 0.0, 0.0], [0.0, HEIGHT / 2.0, 0.0], depth],
-        );
+        add_box(mesh, add(middle, rail), [[WIDTH / 2.0, 0.0, 0.0], [0.0, HALF, 0.0], depth]);
+        add_box(mesh, add(middle, post), [[HALF, 0.0, 0.0], [0.0, HEIGHT / 2.0, 0.0], depth]);
     }
     for bar in 0..bars {
         // A bar starts at the lower rail, or at the side where that is too short.
@@ -129,11 +106,7 @@ fn add_lattice(mesh: &mut Loaded, bars: usize) {
         let (from, to) = (start.max(0.0), (start + HEIGHT).min(WIDTH));
         let (half, middle) = ((to - from) / 2.0, (to + from) / 2.0);
         for side in [-1.0, 1.0] {
-            let centre = [
-                side * (middle - WIDTH / 2.0),
-                middle - start,
-                DEPTH + side * HALF,
-            ];
+            let centre = [side * (middle - WIDTH / 2.0), middle - start, DEPTH + side * HALF];
             let along = [side * half, half, 0.0];
             let across = scale([-1.0, side, 0.0], HALF / 2.0);
             add_box(mesh, centre, [along, across, [0.0, 0.0, HALF / 2.0]]);
@@ -185,11 +158,7 @@ pub(super) fn add_gear(mesh: &mut Loaded, triangles: usize) {
         let radius = mix(1.1, 0.42, inward) + 0.11 * tooth * libm::pow(1.0 - inward, 6.0);
         let hollow = (8.0 * inward * (1.0 - inward) - 0.9).clamp(0.0, 1.0) * height;
         let (sin, cos) = sin_cos(u + 0.03 * height);
-        [
-            radius * sin + 2.6,
-            HEIGHT * height - 0.14 * hollow,
-            radius * cos + 2.2,
-        ]
+        [radius * sin + 2.6, HEIGHT * height - 0.14 * hollow, radius * cos + 2.2]
     });
 }
 
@@ -199,10 +168,7 @@ pub(super) fn add_rounded_cube(mesh: &mut Loaded, triangles: usize) {
     };
     add_cap(mesh, [columns, rows + 1], true, |u, v| {
         let direction = direction(u, v);
-        let sum: f64 = direction
-            .iter()
-            .map(|value| libm::pow(value.abs(), 6.0))
-            .sum();
+        let sum: f64 = direction.iter().map(|value| libm::pow(value.abs(), 6.0)).sum();
         let point = scale(direction, 0.72 / libm::pow(sum, 1.0 / 6.0));
         add(turned(point, 0.09), [-3.3, 0.0, 2.5])
     });
@@ -215,11 +181,7 @@ fn add_bowl(mesh: &mut Loaded, triangles: usize) {
     add_cap(mesh, [columns, rows], false, |u, v| {
         let scallop = sin_cos(10.0 * u).1 * v * v * v * v;
         let ((sin, cos), radius) = (sin_cos(u), v * (1.05 + 0.07 * scallop));
-        [
-            radius * sin + 0.2,
-            0.85 * v * v + 0.06 * scallop,
-            radius * cos + 2.9,
-        ]
+        [radius * sin + 0.2, 0.85 * v * v + 0.06 * scallop, radius * cos + 2.9]
     });
 }
 
@@ -235,11 +197,7 @@ fn add_ribbon(mesh: &mut Loaded, triangles: usize) {
         let (sin, cos) = sin_cos(6.0 * u);
         let radius = 0.28 + 0.22 * swell;
         let across = mix(-1.0, 1.0, v) * (0.06 + 0.2 * swell);
-        [
-            mix(-4.6, 4.6, u) + across,
-            3.0 + 0.7 * swell + radius * cos,
-            radius * sin - 2.9,
-        ]
+        [mix(-4.6, 4.6, u) + across, 3.0 + 0.7 * swell + radius * cos, radius * sin - 2.9]
     });
 }
 
@@ -277,7 +235,6 @@ fn add_blade(mesh: &mut Loaded, random: &mut Random, count: usize) {
     }
     for step in 0..count as u32 {
         let [a, b, c] = [step, step + 1, step + 2].map(|corner| first + corner);
-        mesh.triangles
-            .push(if step % 2 == 0 { [a, b, c] } else { [b, a, c] });
+        mesh.triangles.push(if step % 2 == 0 { [a, b, c] } else { [b, a, c] });
     }
 }

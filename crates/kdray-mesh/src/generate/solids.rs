@@ -13,11 +13,7 @@ use crate::Loaded;
 /// ```
 pub fn cube() -> Loaded {
     let mut mesh = Loaded::default();
-    add_box(
-        &mut mesh,
-        [0.0; 3],
-        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-    );
+    add_box(&mut mesh, [0.0; 3], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
     mesh
 }
 
@@ -40,12 +36,7 @@ fn icosahedron() -> Loaded {
     let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
     let mut mesh = Loaded::default();
     for axis in 0..3 {
-        for (short, long) in [
-            (-1.0, -golden),
-            (1.0, -golden),
-            (-1.0, golden),
-            (1.0, golden),
-        ] {
+        for (short, long) in [(-1.0, -golden), (1.0, -golden), (-1.0, golden), (1.0, golden)] {
             let mut point = [0.0; 3];
             point[(axis + 1) % 3] = short;
             point[(axis + 2) % 3] = long;
@@ -61,11 +52,7 @@ fn icosahedron() -> Loaded {
                 let [p, q, r] = corners([a, b, c]);
                 if near(p, q) && near(q, r) && near(r, p) {
                     let normal = cross(subtract(q, p), subtract(r, p));
-                    triangles.push(if dot(normal, p) > 0.0 {
-                        [a, b, c]
-                    } else {
-                        [a, c, b]
-                    });
+                    triangles.push(if dot(normal, p) > 0.0 { [a, b, c] } else { [a, c, b] });
                 }
             }
         }
@@ -87,8 +74,7 @@ fn subdivide(mesh: &mut Loaded) {
                 add_vertex(mesh, normalise(add(from, to)))
             })
         });
-        mesh.triangles
-            .extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+        mesh.triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
     }
 }
 
@@ -105,13 +91,7 @@ fn subdivide(mesh: &mut Loaded) {
 /// ```
 pub fn torus_knot(windings: [u32; 2], segments: usize, sides: usize) -> Loaded {
     let mut mesh = Loaded::default();
-    add_knot(
-        &mut mesh,
-        windings,
-        [segments.max(3), sides.max(3)],
-        0.2,
-        |point| point,
-    );
+    add_knot(&mut mesh, windings, [segments.max(3), sides.max(3)], 0.2, |point| point);
     mesh
 }
 

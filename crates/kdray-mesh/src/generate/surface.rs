@@ -14,8 +14,7 @@ pub(super) enum Ends {
 
 /// Adds `point`, as `f32` has it, and gives its index.
 pub(super) fn add_vertex(mesh: &mut Loaded, point: Vector) -> u32 {
-    mesh.positions
-        .push(point.map(|value| f64::from(value as f32)));
+    mesh.positions.push(point.map(|value| f64::from(value as f32)));
     u32::try_from(mesh.positions.len() - 1)
         .expect("fewer vertices than a triangle count can ask for")
 }
@@ -61,40 +60,27 @@ pub(super) fn add_cap(
     let bands = if is_closed { rows - 2 } else { rows - 1 };
     let pole = add_vertex(mesh, point(0.0, 0.0));
     let ring = |row: usize, column: usize| pole + 1 + (row * columns + column % columns) as u32;
-    add_sheet(
-        mesh,
-        [columns, bands],
-        [Ends::Joined, Ends::Open],
-        |u, v| point(u, (1.0 + v * bands as f64) / rows as f64),
-    );
+    add_sheet(mesh, [columns, bands], [Ends::Joined, Ends::Open], |u, v| {
+        point(u, (1.0 + v * bands as f64) / rows as f64)
+    });
     for column in 0..columns {
-        mesh.triangles
-            .push([pole, ring(0, column + 1), ring(0, column)]);
+        mesh.triangles.push([pole, ring(0, column + 1), ring(0, column)]);
     }
     if is_closed {
         let pole = add_vertex(mesh, point(0.0, 1.0));
         for column in 0..columns {
-            mesh.triangles
-                .push([pole, ring(bands, column), ring(bands, column + 1)]);
+            mesh.triangles.push([pole, ring(bands, column), ring(bands, column + 1)]);
         }
     }
 }
 
 /// Adds a closed box: its centre, and the three half edges, in right-handed order.
 pub(super) fn add_box(mesh: &mut Loaded, centre: Vector, halves: [Vector; 3]) {
-    const FACES: [[u32; 4]; 6] = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
+    const FACES: [[u32; 4]; 6] =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let corner = |bits: usize| {
         let sign = |axis: usize| if bits >> axis & 1 == 1 { 1.0 } else { -1.0 };
-        (0..3).fold(centre, |point, axis| {
-            add(point, scale(halves[axis], sign(axis)))
-        })
+        (0..3).fold(centre, |point, axis| add(point, scale(halves[axis], sign(axis))))
     };
     let first = add_vertex(mesh, corner(0));
     for bits in 1..8 {

@@ -6,18 +6,12 @@ use crate::Loaded;
 /// FNV-1a over the bits of everything in a mesh.
 fn checksum(mesh: &Loaded) -> u64 {
     let positions = mesh.positions.iter().flatten().map(|value| value.to_bits());
-    let indices = mesh
-        .triangles
-        .iter()
-        .flatten()
-        .map(|&index| u64::from(index));
-    positions
-        .chain(indices)
-        .fold(0xcbf2_9ce4_8422_2325, |sum, word| {
-            word.to_le_bytes().iter().fold(sum, |sum, &byte| {
-                (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-            })
-        })
+    let indices = mesh.triangles.iter().flatten().map(|&index| u64::from(index));
+    positions.chain(indices).fold(0xcbf2_9ce4_8422_2325, |sum, word| {
+        word.to_le_bytes()
+            .iter()
+            .fold(sum, |sum, &byte| (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    })
 }
 
 /// How often each directed edge occurs.
@@ -34,9 +28,7 @@ fn edges(triangles: &[[u32; 3]]) -> HashMap<[u32; 2], usize> {
 /// Whether every edge is used once in each direction.
 fn is_closed(triangles: &[[u32; 3]]) -> bool {
     let edges = edges(triangles);
-    edges
-        .iter()
-        .all(|(&[a, b], &count)| count == 1 && edges.get(&[b, a]) == Some(&1))
+    edges.iter().all(|(&[a, b], &count)| count == 1 && edges.get(&[b, a]) == Some(&1))
 }
 
 fn volume(mesh: &Loaded) -> f64 {
@@ -48,19 +40,9 @@ fn volume(mesh: &Loaded) -> f64 {
 }
 
 fn assert_sound(mesh: &Loaded) {
-    assert!(
-        mesh.positions
-            .iter()
-            .flatten()
-            .all(|value| f64::from(*value as f32) == *value)
-    );
+    assert!(mesh.positions.iter().flatten().all(|value| f64::from(*value as f32) == *value));
     let vertices = mesh.positions.len() as u32;
-    assert!(
-        mesh.triangles
-            .iter()
-            .flatten()
-            .all(|&index| index < vertices)
-    );
+    assert!(mesh.triangles.iter().flatten().all(|&index| index < vertices));
     assert!(mesh.mesh().is_ok());
 }
 

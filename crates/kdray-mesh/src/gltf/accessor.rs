@@ -82,14 +82,8 @@ impl<'a> Elements<'a> {
             _ => stride.checked_mul(count - 1)?.checked_add(size)?,
         };
         let bytes = slice(view, offset, length)?;
-        let stride = usize::try_from(stride)
-            .ok()
-            .filter(|&stride| stride as u64 >= size)?;
-        Some(Self {
-            bytes,
-            stride,
-            component,
-        })
+        let stride = usize::try_from(stride).ok().filter(|&stride| stride as u64 >= size)?;
+        Some(Self { bytes, stride, component })
     }
 
     fn read<const N: usize>(&self) -> impl Iterator<Item = [f64; N]> + '_ {
@@ -112,10 +106,7 @@ impl Accessors<'_> {
         let accessor = self.get(index, "VEC3")?;
         let component = component(accessor.component_type, index)?;
         if component == Component::U32 {
-            return Err(LoadError::malformed(
-                place(index),
-                "positions cannot be 32-bit integers",
-            ));
+            return Err(LoadError::malformed(place(index), "positions cannot be 32-bit integers"));
         }
         let mut positions = self.values(accessor, index, component)?;
         if accessor.normalized {
@@ -131,10 +122,7 @@ impl Accessors<'_> {
         let accessor = self.get(index, "SCALAR")?;
         let component = component(accessor.component_type, index)?;
         if !matches!(component, Component::U8 | Component::U16 | Component::U32) {
-            return Err(LoadError::malformed(
-                place(index),
-                "indices must be unsigned integers",
-            ));
+            return Err(LoadError::malformed(place(index), "indices must be unsigned integers"));
         }
         let values: Vec<[f64; 1]> = self.values(accessor, index, component)?;
         Ok(values.into_iter().map(|[value]| value as u32).collect())
@@ -142,10 +130,7 @@ impl Accessors<'_> {
 
     fn get(&self, index: usize, shape: &str) -> Result<&Accessor, LoadError> {
         let Some(accessor) = self.root.accessors.get(index) else {
-            return Err(LoadError::malformed(
-                place(index),
-                "there is no such accessor",
-            ));
+            return Err(LoadError::malformed(place(index), "there is no such accessor"));
         };
         if accessor.shape != shape {
             let reason = format!("its type is {}, not {shape}", accessor.shape);
@@ -165,10 +150,7 @@ impl Accessors<'_> {
             Some(view) => {
                 let view = self.buffers.view(view)?;
                 let elements = Elements::new::<N>(view, accessor.byte_offset, component, count);
-                elements
-                    .ok_or_else(|| too_long(index, count))?
-                    .read()
-                    .collect()
+                elements.ok_or_else(|| too_long(index, count))?.read().collect()
             }
             None if self.buffers.spend_zeros(count) => vec![[0.0; N]; count as usize],
             None => {
@@ -190,11 +172,7 @@ impl Accessors<'_> {
         index: usize,
         component: Component,
     ) -> Result<(), LoadError> {
-        let Sparse {
-            count,
-            indices: at,
-            values: with,
-        } = sparse;
+        let Sparse { count, indices: at, values: with } = sparse;
         let kind = self::component(at.component_type, index)?;
         let view = self.buffers.view(at.buffer_view)?;
         let targets = Elements::new::<1>(view, at.byte_offset, kind, *count);

@@ -76,13 +76,7 @@ impl<'a> Buffers<'a> {
     ) -> Self {
         let fetched = root.buffers.iter().map(|_| OnceCell::new()).collect();
         let zeros_left = Cell::new(FREE_ZEROS.max(file_size as u64));
-        Self {
-            root,
-            chunk,
-            external,
-            fetched,
-            zeros_left,
-        }
+        Self { root, chunk, external, fetched, zeros_left }
     }
 
     /// Whether an accessor without data may have `count` elements; if so, they count.
@@ -103,10 +97,7 @@ impl<'a> Buffers<'a> {
             let (offset, length, all) = (view.byte_offset, view.byte_length, buffer.len());
             format!("{length} bytes from byte {offset} on, of a buffer of {all}")
         };
-        Ok((
-            bytes.ok_or_else(|| LoadError::truncated(place(), reason()))?,
-            view.byte_stride,
-        ))
+        Ok((bytes.ok_or_else(|| LoadError::truncated(place(), reason()))?, view.byte_stride))
     }
 
     fn buffer(&self, index: usize) -> Result<&[u8], LoadError> {
@@ -127,11 +118,8 @@ impl<'a> Buffers<'a> {
             },
         };
         if (bytes.len() as u64) < buffer.byte_length {
-            let reason = format!(
-                "{} bytes are announced, {} are here",
-                buffer.byte_length,
-                bytes.len()
-            );
+            let reason =
+                format!("{} bytes are announced, {} are here", buffer.byte_length, bytes.len());
             return Err(LoadError::truncated(place(), reason));
         }
         Ok(bytes)
@@ -149,10 +137,7 @@ impl<'a> Buffers<'a> {
         let name = percent_decode_str(uri).decode_utf8();
         let name = name.map_err(|_| Reason::Malformed("its uri is not UTF-8".into()))?;
         (self.external)(&name, buffer.byte_length).map_err(|error| {
-            Reason::Io(std::io::Error::new(
-                error.kind(),
-                format!("{name}: {error}"),
-            ))
+            Reason::Io(std::io::Error::new(error.kind(), format!("{name}: {error}")))
         })
     }
 }

@@ -26,11 +26,8 @@ pub(crate) type External<'a> = &'a dyn Fn(&str, u64) -> io::Result<Vec<u8>>;
 
 /// Reads a glTF or GLB file.
 pub(crate) fn read(bytes: &[u8], external: External) -> Result<Loaded, LoadError> {
-    let (json, chunk) = if bytes.starts_with(b"glTF") {
-        buffers::split_glb(bytes)?
-    } else {
-        (bytes, None)
-    };
+    let (json, chunk) =
+        if bytes.starts_with(b"glTF") { buffers::split_glb(bytes)? } else { (bytes, None) };
     let root = parse(json)?;
     check_extensions(&root)?;
     let buffers = Buffers::new(&root, chunk, external, bytes.len());
@@ -67,10 +64,7 @@ fn check_extensions(root: &Root) -> Result<(), LoadError> {
         None => Ok(()),
         Some(name) => {
             let place = Place::item("extensionsRequired");
-            Err(LoadError::unsupported(
-                place,
-                format!("the extension {name}"),
-            ))
+            Err(LoadError::unsupported(place, format!("the extension {name}")))
         }
     }
 }

@@ -13,11 +13,7 @@ use crate::loaded::check_vertex_count;
 /// The triangles of the default scene; without a scene, of all nodes; without nodes, of all meshes.
 pub(super) fn flatten(root: &Root, buffers: &Buffers) -> Result<Loaded, LoadError> {
     let accessors = Accessors { root, buffers };
-    let mut flat = Flat {
-        accessors,
-        loaded: Loaded::default(),
-        left_out: LeftOut::default(),
-    };
+    let mut flat = Flat { accessors, loaded: Loaded::default(), left_out: LeftOut::default() };
     check_transforms(root)?;
     if root.nodes.is_empty() {
         for mesh in 0..root.meshes.len() {
@@ -54,9 +50,7 @@ fn root_nodes(root: &Root) -> Result<Vec<usize>, LoadError> {
                     *is_child = true;
                 }
             }
-            Ok((0..root.nodes.len())
-                .filter(|&node| !is_child[node])
-                .collect())
+            Ok((0..root.nodes.len()).filter(|&node| !is_child[node]).collect())
         }
     }
 }
@@ -81,14 +75,8 @@ impl LeftOut {
                 notes.push(format!("{count} {what}"));
             }
         };
-        note(
-            self.lines_and_points,
-            "primitives of points or lines left out",
-        );
-        note(
-            self.corners,
-            "corners beyond the last whole triangle left out",
-        );
+        note(self.lines_and_points, "primitives of points or lines left out");
+        note(self.corners, "corners beyond the last whole triangle left out");
         note(self.morphs, "primitives with morph targets taken at rest");
         note(self.skins, "skinned meshes taken at rest");
     }
@@ -106,20 +94,13 @@ impl Flat<'_> {
     fn nodes(&mut self, roots: Vec<usize>) -> Result<(), LoadError> {
         let nodes = &self.accessors.root.nodes;
         let mut visited = vec![false; nodes.len()];
-        let start = roots
-            .into_iter()
-            .rev()
-            .map(|index| (index, Transform::IDENTITY));
+        let start = roots.into_iter().rev().map(|index| (index, Transform::IDENTITY));
         let mut stack: Vec<(usize, Transform)> = start.collect();
         while let Some((index, parent)) = stack.pop() {
-            let node = nodes
-                .get(index)
-                .ok_or_else(|| node_error(index, "there is no such node"))?;
+            let node =
+                nodes.get(index).ok_or_else(|| node_error(index, "there is no such node"))?;
             if std::mem::replace(&mut visited[index], true) {
-                return Err(node_error(
-                    index,
-                    "it is in the scene twice, or its own ancestor",
-                ));
+                return Err(node_error(index, "it is in the scene twice, or its own ancestor"));
             }
             let local = Transform::of_node(node).map_err(|reason| node_error(index, reason))?;
             let transform = parent.after(&local);
@@ -160,10 +141,7 @@ impl Flat<'_> {
             }
             4..7 => {}
             mode => {
-                return Err(LoadError::malformed(
-                    place(),
-                    format!("{mode} is not a mode"),
-                ));
+                return Err(LoadError::malformed(place(), format!("{mode} is not a mode")));
             }
         }
         self.left_out.morphs += usize::from(!primitive.targets.is_empty());
@@ -172,21 +150,13 @@ impl Flat<'_> {
         };
         let vertices = match known.get(&position) {
             Some(vertices) => *vertices,
-            None => *known
-                .entry(position)
-                .or_insert(self.vertices(position, transform)?),
+            None => *known.entry(position).or_insert(self.vertices(position, transform)?),
         };
         let corners = match primitive.indices {
             Some(indices) => self.accessors.indices(indices)?,
             None => (0..vertices.count).collect(),
         };
-        self.triangles(
-            primitive.mode,
-            &corners,
-            vertices,
-            transform.mirrors(),
-            item,
-        )
+        self.triangles(primitive.mode, &corners, vertices, transform.mirrors(), item)
     }
 
     /// Adds the vertices of an accessor, moved to their place.
@@ -194,13 +164,8 @@ impl Flat<'_> {
         let positions = self.accessors.positions(accessor)?;
         let first = self.loaded.positions.len();
         check_vertex_count(first + positions.len())?;
-        self.loaded
-            .positions
-            .extend(positions.iter().map(|&position| transform.apply(position)));
-        Ok(Vertices {
-            first: first as u32,
-            count: positions.len() as u32,
-        })
+        self.loaded.positions.extend(positions.iter().map(|&position| transform.apply(position)));
+        Ok(Vertices { first: first as u32, count: positions.len() as u32 })
     }
 
     fn triangles(
@@ -214,10 +179,7 @@ impl Flat<'_> {
         if let Some(bad) = corners.iter().position(|&corner| corner >= vertices.count) {
             let place = Place::item(format!("{item}, corner {bad}"));
             let (index, vertices) = (corners[bad].into(), vertices.count as usize);
-            return Err(LoadError::new(
-                place,
-                Reason::IndexOutOfRange { index, vertices },
-            ));
+            return Err(LoadError::new(place, Reason::IndexOutOfRange { index, vertices }));
         }
         let (count, surplus) = match (mode, corners.len()) {
             (4, corners) => (corners / 3, corners % 3),

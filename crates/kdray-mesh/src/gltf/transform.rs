@@ -10,10 +10,8 @@ pub(super) struct Transform {
 }
 
 impl Transform {
-    pub(super) const IDENTITY: Self = Self {
-        columns: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        offset: [0.0; 3],
-    };
+    pub(super) const IDENTITY: Self =
+        Self { columns: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], offset: [0.0; 3] };
 
     /// The transform of a node over that of its parent; an error says what is wrong with it.
     pub(super) fn of_node(node: &Node) -> Result<Self, &'static str> {
@@ -21,17 +19,9 @@ impl Transform {
             Some(matrix) => Self::from_matrix(matrix)?,
             None => Self::from_parts(node)?,
         };
-        let is_finite = transform
-            .columns
-            .as_flattened()
-            .iter()
-            .all(|value| value.is_finite())
+        let is_finite = transform.columns.as_flattened().iter().all(|value| value.is_finite())
             && transform.offset.iter().all(|value| value.is_finite());
-        if is_finite {
-            Ok(transform)
-        } else {
-            Err("its transform is not finite")
-        }
+        if is_finite { Ok(transform) } else { Err("its transform is not finite") }
     }
 
     fn from_matrix(m: [f64; 16]) -> Result<Self, &'static str> {
@@ -39,10 +29,7 @@ impl Transform {
             return Err("its matrix is not affine");
         }
         let column = |k: usize| [m[4 * k], m[4 * k + 1], m[4 * k + 2]];
-        Ok(Self {
-            columns: [column(0), column(1), column(2)],
-            offset: column(3),
-        })
+        Ok(Self { columns: [column(0), column(1), column(2)], offset: column(3) })
     }
 
     fn from_parts(node: &Node) -> Result<Self, &'static str> {
@@ -50,23 +37,14 @@ impl Transform {
         for (column, scale) in columns.iter_mut().zip(node.scale.unwrap_or([1.0; 3])) {
             *column = column.map(|value| value * scale);
         }
-        Ok(Self {
-            columns,
-            offset: node.translation.unwrap_or([0.0; 3]),
-        })
+        Ok(Self { columns, offset: node.translation.unwrap_or([0.0; 3]) })
     }
 
     /// This transform after `inner`.
     pub(super) fn after(&self, inner: &Self) -> Self {
-        let linear = Self {
-            offset: [0.0; 3],
-            ..*self
-        };
+        let linear = Self { offset: [0.0; 3], ..*self };
         let columns = inner.columns.map(|column| linear.apply(column));
-        Self {
-            columns,
-            offset: self.apply(inner.offset),
-        }
+        Self { columns, offset: self.apply(inner.offset) }
     }
 
     pub(super) fn apply(&self, point: [f64; 3]) -> [f64; 3] {
@@ -94,20 +72,8 @@ fn rotation([x, y, z, w]: [f64; 4]) -> Result<[[f64; 3]; 3], &'static str> {
     }
     let s = 2.0 / square;
     Ok([
-        [
-            1.0 - s * (y * y + z * z),
-            s * (x * y + w * z),
-            s * (x * z - w * y),
-        ],
-        [
-            s * (x * y - w * z),
-            1.0 - s * (x * x + z * z),
-            s * (y * z + w * x),
-        ],
-        [
-            s * (x * z + w * y),
-            s * (y * z - w * x),
-            1.0 - s * (x * x + y * y),
-        ],
+        [1.0 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)],
+        [s * (x * y - w * z), 1.0 - s * (x * x + z * z), s * (y * z + w * x)],
+        [s * (x * z + w * y), s * (y * z - w * x), 1.0 - s * (x * x + y * y)],
     ])
 }

@@ -74,25 +74,13 @@ impl Body for Ascii<'_> {
     }
 
     fn value(&mut self, _: Scalar) -> Result<f64, Fault> {
-        let missing = if self.is_at_end {
-            Fault::End
-        } else {
-            Fault::Missing
-        };
-        let word = self
-            .first
-            .take()
-            .or_else(|| self.scanner.word())
-            .ok_or(missing)?;
+        let missing = if self.is_at_end { Fault::End } else { Fault::Missing };
+        let word = self.first.take().or_else(|| self.scanner.word()).ok_or(missing)?;
         number(word).ok_or(Fault::NotANumber)
     }
 
     fn end_row(&mut self) -> Result<(), Fault> {
-        if self.scanner.word().is_some() {
-            Err(Fault::Surplus)
-        } else {
-            Ok(())
-        }
+        if self.scanner.word().is_some() { Err(Fault::Surplus) } else { Ok(()) }
     }
 
     fn left(&self) -> usize {
@@ -125,11 +113,7 @@ pub(super) struct Binary<'a, const BIG: bool> {
 
 impl<'a, const BIG: bool> Binary<'a, BIG> {
     pub(super) fn new(bytes: &'a [u8], header: &Header) -> Self {
-        Self {
-            bytes,
-            rest: &bytes[header.body..],
-            vertices: announced_vertices(header),
-        }
+        Self { bytes, rest: &bytes[header.body..], vertices: announced_vertices(header) }
     }
 
     fn take<const N: usize>(&mut self) -> Result<[u8; N], Fault> {

@@ -103,18 +103,10 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header, LoadError> {
         }
     }
     let Some(encoding) = encoding else {
-        return Err(LoadError::malformed(
-            Place::whole(),
-            "the header has no format line",
-        ));
+        return Err(LoadError::malformed(Place::whole(), "the header has no format line"));
     };
     scanner.next_line();
-    Ok(Header {
-        encoding,
-        elements,
-        body: scanner.offset(),
-        lines: scanner.line() - 1,
-    })
+    Ok(Header { encoding, elements, body: scanner.offset(), lines: scanner.line() - 1 })
 }
 
 /// The words of the line, few of which matter; a header line of the format has five at most.
@@ -127,10 +119,7 @@ fn parse_encoding(name: &[u8], scanner: &Scanner) -> Result<Encoding, LoadError>
         b"ascii" => Ok(Encoding::Ascii),
         b"binary_little_endian" => Ok(Encoding::LittleEndian),
         b"binary_big_endian" => Ok(Encoding::BigEndian),
-        _ => Err(LoadError::malformed(
-            scanner.place(),
-            format!("unknown format {}", quoted(name)),
-        )),
+        _ => Err(LoadError::malformed(scanner.place(), format!("unknown format {}", quoted(name)))),
     }
 }
 
@@ -141,24 +130,15 @@ fn add_element(
     scanner: &Scanner,
 ) -> Result<(), LoadError> {
     let name = String::from_utf8_lossy(name).into_owned();
-    let parsed = std::str::from_utf8(count)
-        .ok()
-        .and_then(|count| count.parse().ok());
+    let parsed = std::str::from_utf8(count).ok().and_then(|count| count.parse().ok());
     let Some(parsed) = parsed else {
         let reason = format!("{} is not a count of rows", quoted(count));
         return Err(LoadError::malformed(scanner.place(), reason));
     };
     if elements.iter().any(|element| element.name == name) {
-        return Err(LoadError::malformed(
-            scanner.place(),
-            format!("a second element {name}"),
-        ));
+        return Err(LoadError::malformed(scanner.place(), format!("a second element {name}")));
     }
-    elements.push(Element {
-        name,
-        count: parsed,
-        properties: Vec::new(),
-    });
+    elements.push(Element { name, count: parsed, properties: Vec::new() });
     Ok(())
 }
 
@@ -168,10 +148,7 @@ fn add_property(
     scanner: &Scanner,
 ) -> Result<(), LoadError> {
     let Some(element) = elements.last_mut() else {
-        return Err(LoadError::malformed(
-            scanner.place(),
-            "a property before the first element",
-        ));
+        return Err(LoadError::malformed(scanner.place(), "a property before the first element"));
     };
     let (list, scalar, name) = match *words {
         [b"list", length, scalar, name] => (Some(length), scalar, name),
@@ -189,11 +166,7 @@ fn add_property(
         list: list.map(parse).transpose()?,
         scalar: parse(scalar)?,
     };
-    if element
-        .properties
-        .iter()
-        .any(|other| other.name == property.name)
-    {
+    if element.properties.iter().any(|other| other.name == property.name) {
         let reason = format!("a second property {} of {}", property.name, element.name);
         return Err(LoadError::malformed(scanner.place(), reason));
     }
@@ -202,10 +175,7 @@ fn add_property(
 }
 
 fn not_understood(word: &[u8], scanner: &Scanner) -> LoadError {
-    LoadError::malformed(
-        scanner.place(),
-        format!("{} is not part of a PLY header", quoted(word)),
-    )
+    LoadError::malformed(scanner.place(), format!("{} is not part of a PLY header", quoted(word)))
 }
 
 #[cfg(test)]
@@ -217,10 +187,7 @@ mod tests {
         let text = b"ply\r\ncomment a b\r\nformat binary_big_endian 1.0\r\nelement face 2\r\n\
             property list uchar int vertex_indices\r\nend_header\r\n\x01";
         let header = parse(text).expect("a sound header");
-        assert_eq!(
-            (header.encoding, header.body),
-            (Encoding::BigEndian, text.len() - 1)
-        );
+        assert_eq!((header.encoding, header.body), (Encoding::BigEndian, text.len() - 1));
         assert_eq!(header.elements[0].count, 2);
         assert_eq!(header.elements[0].properties[0].list, Some(Scalar::U8));
     }

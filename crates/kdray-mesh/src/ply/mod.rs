@@ -28,15 +28,8 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Loaded, LoadError> {
 
 fn read_elements(header: &Header, mut body: impl Body) -> Result<Loaded, LoadError> {
     let mut sink = Sink::default();
-    if !header
-        .elements
-        .iter()
-        .any(|element| element.name == "vertex")
-    {
-        return Err(LoadError::malformed(
-            Place::whole(),
-            "the header declares no vertex element",
-        ));
+    if !header.elements.iter().any(|element| element.name == "vertex") {
+        return Err(LoadError::malformed(Place::whole(), "the header declares no vertex element"));
     }
     for element in &header.elements {
         let slots = slots(element)?;
@@ -54,16 +47,9 @@ fn read_elements(header: &Header, mut body: impl Body) -> Result<Loaded, LoadErr
 
 /// Refuses more rows than the rest of the file can hold.
 fn check_claim(element: &Element, body: &impl Body) -> Result<(), LoadError> {
-    let Element {
-        count,
-        ref name,
-        ref properties,
-    } = *element;
+    let Element { count, ref name, ref properties } = *element;
     let left = body.left();
-    let least: usize = properties
-        .iter()
-        .map(|property| body.least_size(property))
-        .sum();
+    let least: usize = properties.iter().map(|property| body.least_size(property)).sum();
     if count.checked_mul(least).is_some_and(|bytes| bytes <= left) {
         return Ok(());
     }
@@ -107,11 +93,7 @@ fn slots(element: &Element) -> Result<Vec<Slot>, LoadError> {
         })
         .collect();
     let needed: &[(Use, &str)] = match element.name.as_str() {
-        "vertex" => &[
-            (Use::Axis(0), "x"),
-            (Use::Axis(1), "y"),
-            (Use::Axis(2), "z"),
-        ],
+        "vertex" => &[(Use::Axis(0), "x"), (Use::Axis(1), "y"), (Use::Axis(2), "z")],
         "face" => &[(Use::Corners, "list vertex_indices")],
         "tristrips" => &[(Use::Strips, "list vertex_indices")],
         _ => &[],
@@ -119,10 +101,7 @@ fn slots(element: &Element) -> Result<Vec<Slot>, LoadError> {
     for &(usage, name) in needed {
         if element.count > 0 && slots.iter().all(|slot| slot.usage != usage) {
             let place = Place::item(format!("element {}", element.name));
-            return Err(LoadError::malformed(
-                place,
-                format!("it has no property {name}"),
-            ));
+            return Err(LoadError::malformed(place, format!("it has no property {name}")));
         }
     }
     Ok(slots)
@@ -193,8 +172,7 @@ impl Sink {
         self.strip.push(index(value)?);
         if let [.., a, b, c] = self.strip[..] {
             let is_turned = self.strip.len().is_multiple_of(2);
-            self.faces
-                .triangle(if is_turned { [b, a, c] } else { [a, b, c] }, line);
+            self.faces.triangle(if is_turned { [b, a, c] } else { [a, b, c] }, line);
         }
         Ok(())
     }
@@ -208,11 +186,7 @@ fn whole(value: f64) -> Option<i64> {
 
 fn index(value: f64) -> Result<u32, Fault> {
     let index = value as u32;
-    if f64::from(index) == value {
-        Ok(index)
-    } else {
-        Err(Fault::Index(value))
-    }
+    if f64::from(index) == value { Ok(index) } else { Err(Fault::Index(value)) }
 }
 
 /// The error for a row that could not be read.
@@ -228,10 +202,7 @@ fn explain(fault: Fault, element: &Element, row: usize, body: &impl Body) -> Loa
         Fault::Surplus => LoadError::malformed(place, "the line has too many values"),
         Fault::NotANumber => LoadError::malformed(place, "not a number"),
         Fault::Length(length) => {
-            let reason = format!(
-                "a list of {length} values, but {} bytes are left",
-                body.left()
-            );
+            let reason = format!("a list of {length} values, but {} bytes are left", body.left());
             LoadError::malformed(place, reason)
         }
         Fault::Index(value) => match whole(value) {
@@ -264,14 +235,8 @@ mod tests {
             property float y\nproperty float z\nelement face 1\n\
             property list uchar int vertex_index\nend_header\n0 0 0\n3 0 0 CORNER\n";
         for (corner, message) in [
-            (
-                "1",
-                "line 11, face 0: vertex index 1 is out of range: there are 1 vertices",
-            ),
-            (
-                "-2",
-                "line 11, face 0: vertex index -2 is out of range: there are 1 vertices",
-            ),
+            ("1", "line 11, face 0: vertex index 1 is out of range: there are 1 vertices"),
+            ("-2", "line 11, face 0: vertex index -2 is out of range: there are 1 vertices"),
             ("0.5", "line 11, face 0: 0.5 is not a vertex index"),
             ("x", "line 11, face 0: not a number"),
             ("0 0", "line 11, face 0: the line has too many values"),

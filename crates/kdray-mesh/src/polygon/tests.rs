@@ -42,11 +42,7 @@ fn assert_edges_are_kept(count: usize, triangles: &[[u32; 3]]) {
     for (&[from, to], &uses) in &balance {
         let is_border = to as usize == (from as usize + 1) % count;
         let is_border_reversed = from as usize == (to as usize + 1) % count;
-        assert_eq!(
-            uses,
-            i32::from(is_border) - i32::from(is_border_reversed),
-            "{from} {to}"
-        );
+        assert_eq!(uses, i32::from(is_border) - i32::from(is_border_reversed), "{from} {to}");
     }
 }
 
@@ -54,10 +50,7 @@ fn assert_edges_are_kept(count: usize, triangles: &[[u32; 3]]) {
 fn assert_area_is_kept(positions: &[[f64; 3]], triangles: &[[u32; 3]]) {
     let corners: Vec<u32> = (0..positions.len() as u32).collect();
     let whole = length(area(positions, &corners));
-    let parts: f64 = triangles
-        .iter()
-        .map(|triangle| length(area(positions, triangle)))
-        .sum();
+    let parts: f64 = triangles.iter().map(|triangle| length(area(positions, triangle))).sum();
     assert!((whole - parts).abs() <= 1e-9 * whole, "{whole} {parts}");
 }
 
@@ -86,11 +79,7 @@ fn a_star_that_crosses_itself_keeps_its_edges() {
 
 #[test]
 fn polygons_without_area_keep_their_corners() {
-    for polygon in [
-        vec![[1.0; 3]; 5],
-        vec![[f64::NAN; 3]; 4],
-        vec![[1e300, -1e300, 1e300]; 4],
-    ] {
+    for polygon in [vec![[1.0; 3]; 5], vec![[f64::NAN; 3]; 4], vec![[1e300, -1e300, 1e300]; 4]] {
         assert_eq!(triangulate(&polygon).0.len(), polygon.len() - 2);
     }
 }
@@ -98,15 +87,10 @@ fn polygons_without_area_keep_their_corners() {
 #[test]
 fn a_tangle_ends_with_the_work_allowed() {
     let jump = |corner: u64| (corner.wrapping_mul(6_364_136_223_846_793_005) >> 40) as f64;
-    let points: Vec<[f64; 2]> = (0..4_000)
-        .map(|k| [jump(2 * k + 1), jump(2 * k + 2)])
-        .collect();
+    let points: Vec<[f64; 2]> = (0..4_000).map(|k| [jump(2 * k + 1), jump(2 * k + 2)]).collect();
     let corners: Vec<u32> = (0..points.len() as u32).collect();
     let mut triangles = Vec::new();
-    let mut triangulator = Triangulator {
-        work_left: 10_000,
-        ..Triangulator::default()
-    };
+    let mut triangulator = Triangulator { work_left: 10_000, ..Triangulator::default() };
     let clean = triangulator.triangulate(&corners, &askew(&points), &mut triangles);
     assert!(!clean && triangulator.work_left == 0);
     assert_edges_are_kept(points.len(), &triangles);

@@ -11,22 +11,12 @@ pub(crate) struct Polygons {
 
 impl Polygons {
     pub(crate) fn of_triangles(mesh: &kdray_mesh::Loaded) -> Self {
-        let faces = mesh
-            .triangles
-            .iter()
-            .map(|triangle| triangle.to_vec())
-            .collect();
-        Self {
-            positions: mesh.positions.clone(),
-            faces,
-        }
+        let faces = mesh.triangles.iter().map(|triangle| triangle.to_vec()).collect();
+        Self { positions: mesh.positions.clone(), faces }
     }
 
     fn corners(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
-        self.faces
-            .iter()
-            .flatten()
-            .map(|&corner| self.positions[corner as usize])
+        self.faces.iter().flatten().map(|&corner| self.positions[corner as usize])
     }
 }
 
@@ -58,11 +48,7 @@ fn spaced(face: &[u32]) -> String {
 
 /// Binary PLY with single-precision positions, most significant byte first if `is_big`.
 pub(crate) fn ply_binary(mesh: &Polygons, is_big: bool) -> Vec<u8> {
-    let format = if is_big {
-        "binary_big_endian"
-    } else {
-        "binary_little_endian"
-    };
+    let format = if is_big { "binary_big_endian" } else { "binary_little_endian" };
     let mut bytes = ply_header(mesh, format, "float", "uint").into_bytes();
     let mut put = |value: &[u8]| {
         let mut value = value.to_vec();
@@ -73,9 +59,7 @@ pub(crate) fn ply_binary(mesh: &Polygons, is_big: bool) -> Vec<u8> {
     };
     for &[x, y, z] in &mesh.positions {
         put(&[7]);
-        [z, x, y]
-            .iter()
-            .for_each(|&value| put(&(value as f32).to_le_bytes()));
+        [z, x, y].iter().for_each(|&value| put(&(value as f32).to_le_bytes()));
     }
     for face in &mesh.faces {
         put(&[1]);
@@ -112,11 +96,8 @@ pub(crate) fn obj(mesh: &Polygons) -> Vec<u8> {
 }
 
 pub(crate) fn off(mesh: &Polygons) -> Vec<u8> {
-    let mut text = format!(
-        "COFF # made by a test\n{} {} 0\n\n",
-        mesh.positions.len(),
-        mesh.faces.len()
-    );
+    let mut text =
+        format!("COFF # made by a test\n{} {} 0\n\n", mesh.positions.len(), mesh.faces.len());
     for [x, y, z] in &mesh.positions {
         writeln!(text, "{x} {y} {z} 255 0 0 255").unwrap();
     }
@@ -153,11 +134,7 @@ pub(crate) fn stl_binary(mesh: &Polygons) -> Vec<u8> {
         if number % 3 == 0 {
             bytes.extend([0; 12]);
         }
-        bytes.extend(
-            corner
-                .iter()
-                .flat_map(|&value| (value as f32).to_le_bytes()),
-        );
+        bytes.extend(corner.iter().flat_map(|&value| (value as f32).to_le_bytes()));
         if number % 3 == 2 {
             bytes.extend([0; 2]);
         }
@@ -179,11 +156,7 @@ pub(crate) fn gltf_buffer(mesh: &Polygons) -> Vec<u8> {
 pub(crate) fn gltf_document(mesh: &Polygons, uri: &str) -> String {
     let (vertices, corners) = (mesh.positions.len(), 3 * mesh.faces.len());
     let (split, end) = (12 * vertices, 12 * vertices + 4 * corners);
-    let uri = if uri.is_empty() {
-        String::new()
-    } else {
-        format!(r#""uri":"{uri}","#)
-    };
+    let uri = if uri.is_empty() { String::new() } else { format!(r#""uri":"{uri}","#) };
     format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
         "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],
@@ -200,10 +173,7 @@ pub(crate) fn gltf_document(mesh: &Polygons, uri: &str) -> String {
 
 /// glTF with its buffer in a data URI.
 pub(crate) fn gltf(mesh: &Polygons) -> Vec<u8> {
-    let content: String = gltf_buffer(mesh)
-        .iter()
-        .map(|byte| format!("%{byte:02x}"))
-        .collect();
+    let content: String = gltf_buffer(mesh).iter().map(|byte| format!("%{byte:02x}")).collect();
     gltf_document(mesh, &format!("data:application/octet-stream,{content}")).into_bytes()
 }
 

@@ -27,7 +27,8 @@ pub(super) fn picture(
         let direction = cosine_hemisphere(point.shading, sampler.next());
         let feeler = Ray { t_max: reach, ..point.leave(direction) };
         let light = if probe.occluded(&feeler) { point.haze * OPEN } else { OPEN };
-        let surface = Surface { position: point.position, normal: point.shading, albedo: Vec3::ONE };
+        let surface =
+            Surface { position: point.position, normal: point.shading, albedo: Vec3::ONE };
         Sample { light, surface: Some(surface) }
     };
     let film = smoothed(Film::expose(scene, camera, options, shade)?, options)?;

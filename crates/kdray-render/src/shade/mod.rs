@@ -17,7 +17,7 @@ pub(crate) use cost::heat;
 /// A picture of `mesh` as `camera` sees it, on the threads of the current `rayon` pool.
 ///
 /// The tracer must be of the same mesh. The same input gives the same picture on any number of
-/// threads. A mesh that changes neither in shape nor in size may be given at any scale.
+/// threads.
 ///
 /// # Errors
 ///

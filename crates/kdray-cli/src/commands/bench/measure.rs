@@ -32,8 +32,7 @@ impl Measurement {
         cancel: &AtomicBool,
     ) -> anyhow::Result<Self> {
         let progress = Progress::new("measuring");
-        let options =
-            BuildOptions { threads, cancel: Some(cancel), ..BuildOptions::default() };
+        let options = BuildOptions { threads, cancel: Some(cancel), ..BuildOptions::default() };
         let mut seconds = Vec::new();
         let (mut tree, report) = Tree::build_reported(mesh, &options)?;
         for pass in 0..passes {

@@ -94,7 +94,16 @@ impl Report {
         let _ = writeln!(
             text,
             "{:24} {:>10} {:>7} {:>9} {:>9} {:>10} {:>10} {:>9} {:>9} {:>9}",
-            "mesh", "triangles", "threads", "best", "median", "memory", "size", "primary", "bounce", "shadow"
+            "mesh",
+            "triangles",
+            "threads",
+            "best",
+            "median",
+            "memory",
+            "size",
+            "primary",
+            "bounce",
+            "shadow"
         );
         for Result { mesh, triangles, measurement: m } in &self.results {
             let name = Path::new(mesh).file_name().unwrap_or(mesh.as_ref()).to_string_lossy();
@@ -103,7 +112,10 @@ impl Report {
             let _ = writeln!(
                 text,
                 "{name:24} {:>10} {:>7} {:>9.4} {:>9.4} {peak:>10} {tree:>10} {primary:>9} {bounce:>9} {shadow:>9}",
-                count(*triangles), m.threads, m.build_best_s, m.build_median_s
+                count(*triangles),
+                m.threads,
+                m.build_best_s,
+                m.build_median_s
             );
         }
         text

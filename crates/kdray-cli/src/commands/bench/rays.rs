@@ -63,8 +63,8 @@ pub(super) fn shadow(mesh: &Mesh, starts: &[Start]) -> Vec<Ray> {
     let mut random = Pcg32::new(2011, 2);
     let bounds = mesh.bounds();
     let diagonal = point(bounds.extent()).length();
-    let corner = 0.5 * (point(bounds.lower) + point(bounds.upper))
-        + diagonal * DVec3::new(-0.1, 0.9, -0.1);
+    let corner =
+        0.5 * (point(bounds.lower) + point(bounds.upper)) + diagonal * DVec3::new(-0.1, 0.9, -0.1);
     let aim = |start: &Start| {
         let light = corner + 0.2 * diagonal * DVec3::from([(); 3].map(|()| uniform(&mut random)));
         let way = light - start.position;
