@@ -19,7 +19,7 @@ impl FromStr for PictureSize {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (width, height) = text.split_once(['x', 'X']).ok_or("not of the form 1024x768")?;
+        let (width, height) = text.split_once(['x', 'X']).ok_or("not of the form 960x640")?;
         let side = |text: &str| match text.parse() {
             Ok(side @ 1..=MOST_PIXELS) => Ok(side),
             _ => Err(format!("{text:?} is not a number of pixels in 1..={MOST_PIXELS}")),

@@ -18,17 +18,23 @@ pub(crate) struct Corners(Vec<[[i16; 3]; 3]>);
 
 impl Corners {
     pub(crate) fn new(mesh: &Mesh, welded: &[u32]) -> Self {
-        let around = Neighbours::new(mesh, welded);
-        let normals: Vec<Vec3> =
-            (0..mesh.triangles().len()).into_par_iter().map(|t| flat_normal(mesh, t)).collect();
+        let meetings = Meetings::new(mesh, welded);
+        let triangles = (0..mesh.triangles().len()).into_par_iter();
+        let flat: Vec<Vec3> =
+            triangles.clone().map(|triangle| flat_normal(mesh, triangle)).collect();
+        let angles: Vec<[f32; 3]> = triangles.clone().map(|t| angles(mesh.triangle(t))).collect();
         let corners = |triangle: usize| {
-            let flat = normals[triangle];
             mesh.triangles()[triangle].map(|vertex| {
-                let vertex = welded[vertex as usize];
-                pack(smooth_normal(mesh, welded, &normals, around.of(vertex), vertex, flat))
+                let corners = meetings.at(welded[vertex as usize]);
+                pack(smooth_normal(flat[triangle], corners, &flat, angles.as_flattened()))
             })
         };
-        Self((0..mesh.triangles().len()).into_par_iter().map(corners).collect())
+        Self(triangles.map(corners).collect())
+    }
+
+    /// Of a mesh that nobody looks at.
+    pub(crate) fn none() -> Self {
+        Self(Vec::new())
     }
 
     /// The normals of a triangle's corners, of about unit length.
@@ -37,36 +43,29 @@ impl Corners {
     }
 }
 
-/// The mean normal of the neighbours that continue a triangle smoothly at a vertex, weighted by
-/// their angles there.
-fn smooth_normal(
-    mesh: &Mesh,
-    welded: &[u32],
-    normals: &[Vec3],
-    neighbours: &[u32],
-    vertex: u32,
-    flat: Vec3,
-) -> Vec3 {
-    if neighbours.len() > MOST_NEIGHBOURS {
-        return flat;
+/// The mean of the normals around a vertex that continue `normal` smoothly, weighted by the angles
+/// of their triangles there. Corner `3 t + k` is the k-th of triangle t.
+fn smooth_normal(normal: Vec3, corners: &[u32], flat: &[Vec3], angles: &[f32]) -> Vec3 {
+    if corners.len() > MOST_NEIGHBOURS {
+        return normal;
     }
     let mut sum = Vec3::ZERO;
-    for neighbour in neighbours.iter().map(|index| *index as usize) {
-        let cosine = normals[neighbour].dot(flat);
+    for corner in corners.iter().map(|corner| *corner as usize) {
+        let neighbour = flat[corner / 3];
+        let cosine = neighbour.dot(normal);
         if cosine.abs() > CREASE {
-            let corner = mesh.triangles()[neighbour].map(|other| welded[other as usize]);
-            let first = corner.iter().position(|other| *other == vertex).unwrap_or(0);
-            let angle = angle_at(mesh.triangle(neighbour).map(Vec3::from), first);
-            sum += cosine.signum() * angle * normals[neighbour];
+            sum += cosine.signum() * angles[corner] * neighbour;
         }
     }
-    sum.try_normalize().unwrap_or(flat)
+    sum.try_normalize().unwrap_or(normal)
 }
 
-fn angle_at(corners: [Vec3; 3], corner: usize) -> f32 {
-    let [here, next, last] = [0, 1, 2].map(|step| corners[(corner + step) % 3]);
+/// The angles of a triangle in radians.
+fn angles(triangle: [[f32; 3]; 3]) -> [f32; 3] {
+    let [a, b, c] = triangle.map(Vec3::from);
     let unit = |v: Vec3| v.try_normalize().unwrap_or(Vec3::ZERO);
-    unit(next - here).dot(unit(last - here)).clamp(-1.0, 1.0).acos()
+    let [ab, bc, ca] = [unit(b - a), unit(c - b), unit(a - c)];
+    [-ca.dot(ab), -ab.dot(bc), -bc.dot(ca)].map(|cosine| cosine.clamp(-1.0, 1.0).acos())
 }
 
 /// The unit normal of a triangle, or zero for one without area.
@@ -82,13 +81,13 @@ fn pack(normal: Vec3) -> [i16; 3] {
     normal.to_array().map(|component| (component * 32767.0).round() as i16)
 }
 
-/// The triangles around each vertex, one after the other.
-struct Neighbours {
+/// The corners that meet at each vertex, one vertex after the other.
+struct Meetings {
     first: Vec<u32>,
-    triangles: Vec<u32>,
+    corners: Vec<u32>,
 }
 
-impl Neighbours {
+impl Meetings {
     fn new(mesh: &Mesh, welded: &[u32]) -> Self {
         let vertices = mesh.triangles().as_flattened().iter().map(|v| welded[*v as usize]);
         let mut first = vec![0; welded.len() + 1];
@@ -99,18 +98,18 @@ impl Neighbours {
             first[vertex] += first[vertex - 1];
         }
         let mut next = first.clone();
-        let mut triangles = vec![0; 3 * mesh.triangles().len()];
+        let mut corners = vec![0; 3 * mesh.triangles().len()];
         for (corner, vertex) in vertices.enumerate() {
             let slot = &mut next[vertex as usize];
-            triangles[*slot as usize] = corner as u32 / 3;
+            corners[*slot as usize] = corner as u32;
             *slot += 1;
         }
-        Self { first, triangles }
+        Self { first, corners }
     }
 
-    fn of(&self, vertex: u32) -> &[u32] {
+    fn at(&self, vertex: u32) -> &[u32] {
         let [first, last] = [0, 1].map(|step| self.first[vertex as usize + step] as usize);
-        &self.triangles[first..last]
+        &self.corners[first..last]
     }
 }
 
@@ -133,6 +132,14 @@ mod tests {
             let [outer, inner, _] = fold(0.2, flipped).normals(0);
             assert!(outer.distance(Vec3::Z) < 1e-3);
             assert!(inner.x < -0.05 && inner.z > 0.9, "{inner}");
+        }
+    }
+
+    #[test]
+    fn angles_are_those_of_the_corners() {
+        let found = angles([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 3_f32.sqrt(), 0.0]]);
+        for (angle, degrees) in found.into_iter().zip([90.0, 60.0, 30.0]) {
+            assert!((angle.to_degrees() - degrees).abs() < 1e-3, "{found:?}");
         }
     }
 

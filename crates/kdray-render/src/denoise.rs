@@ -86,10 +86,11 @@ impl Filter<'_> {
         other.cover * facing * (-off_plane).exp()
     }
 
-    /// Variance is noisy too: its mean over 3 x 3 pixels.
+    /// Variance is noisy too, at first more than the light itself: its mean over some pixels.
     fn smooth_variance(&self, index: usize) -> f32 {
         let (mut sum, mut count) = (0.0, 0.0_f32);
-        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [dx, dy]));
+        let reach = if self.step == 1 { 3 } else { 1 };
+        let around = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| [dx, dy]));
         for index in around.filter_map(|offset| self.offset(index, offset)) {
             if self.film.pixels[index].cover > 0.0 {
                 sum += self.light[index].variance;

@@ -52,12 +52,12 @@ pub struct RenderOptions<'a> {
 impl Default for RenderOptions<'_> {
     fn default() -> Self {
         Self {
-            width: 1024,
-            height: 768,
+            width: 960,
+            height: 640,
             shading: Shading::default(),
             samples: None,
             bounces: 4,
-            reach: 0.15,
+            reach: 0.2,
             sky: Sky::default(),
             exposure: None,
             albedo: None,

@@ -36,8 +36,8 @@ impl Palette {
     }
 
     /// A colour for each connected part.
-    pub(crate) fn new(mesh: &Mesh, components: &Components, up: Vec3) -> Self {
-        let floors = floors(mesh, components, up);
+    pub(crate) fn new(mesh: &Mesh, components: Components, up: Vec3) -> Self {
+        let floors = floors(mesh, &components, up);
         let parts = || components.areas.iter().zip(&floors);
         let largest = parts().find(|(_, floor)| !**floor).map_or(0.0, |(area, _)| *area);
         let is_large = |(area, floor): (&f32, &bool)| !floor && *area >= SMALL * largest;
@@ -52,11 +52,8 @@ impl Palette {
                 _ => between(SMALL_PARTS),
             }
         });
-        Self {
-            colours: colours.collect(),
-            of_triangle: components.of_triangle.clone(),
-            ground: linear(FLOOR),
-        }
+        let colours = colours.collect();
+        Self { of_triangle: components.of_triangle, colours, ground: linear(FLOOR) }
     }
 
     pub(crate) fn of(&self, triangle: usize) -> Vec3 {
@@ -116,7 +113,7 @@ mod tests {
         let triangles: Vec<[u32; 3]> =
             (0..parts.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let mesh = Mesh::new(&positions, &triangles).expect("finite");
-        Palette::new(&mesh, &Components::new(&mesh, &weld(&mesh)), Vec3::Y)
+        Palette::new(&mesh, Components::new(&mesh, &weld(&mesh)), Vec3::Y)
     }
 
     #[test]

@@ -30,20 +30,19 @@ impl<'a> Scene<'a> {
         options: &RenderOptions,
     ) -> Self {
         let up = camera.vertical();
-        let welded = weld(mesh);
-        let stands = options.ground && matches!(options.shading, Shading::Ao | Shading::Path);
-        let palette = match (options.shading, options.albedo) {
-            (Shading::Path, None) => Palette::new(mesh, &Components::new(mesh, &welded), up),
-            (_, albedo) => Palette::uniform(albedo.map_or(Vec3::ONE, Vec3::from)),
-        };
-        Self {
-            tracer,
-            mesh,
-            corners: Corners::new(mesh, &welded),
-            palette,
-            ground: if stands { Ground::under(mesh, up) } else { None },
-            diagonal: Vec3::from(mesh.bounds().extent()).length(),
+        let is_lit = matches!(options.shading, Shading::Ao | Shading::Path);
+        let diagonal = Vec3::from(mesh.bounds().extent()).length();
+        let albedo = options.albedo.map_or(Vec3::ONE, Vec3::from);
+        let (mut corners, mut palette) = (Corners::none(), Palette::uniform(albedo));
+        if options.shading != Shading::Cost {
+            let welded = weld(mesh);
+            corners = Corners::new(mesh, &welded);
+            if options.shading == Shading::Path && options.albedo.is_none() {
+                palette = Palette::new(mesh, Components::new(mesh, &welded), up);
+            }
         }
+        let ground = if options.ground && is_lit { Ground::under(mesh, up) } else { None };
+        Self { tracer, mesh, corners, palette, ground, diagonal }
     }
 
     /// Where the ray meets the ground.

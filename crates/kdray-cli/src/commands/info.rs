@@ -154,9 +154,11 @@ impl Bounds {
     }
 
     fn rows(&self) -> Vec<(&'static str, String)> {
-        let point = |[x, y, z]: [f64; 3]| format!("{x} {y} {z}");
+        let is_plain = self.frame_origin == [0.0; 3] && self.frame_scale == 1.0;
+        let number = |x: f64| if is_plain { (x as f32).to_string() } else { x.to_string() };
+        let point = |point: [f64; 3]| point.map(number).join(" ");
         let mut rows = vec![("lower", point(self.lower)), ("upper", point(self.upper))];
-        if self.frame_origin != [0.0; 3] || self.frame_scale != 1.0 {
+        if !is_plain {
             let origin = point(self.frame_origin);
             rows.push(("frame", format!("around {origin}, scale {:e}", self.frame_scale)));
         }

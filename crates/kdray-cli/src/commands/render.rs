@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     #[arg(short, long, value_name = "FILE", default_value = "kdray.png")]
     output: PathBuf,
     /// Width and height of the picture in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x768")]
+    #[arg(long, value_name = "WxH", default_value = "960x640")]
     size: PictureSize,
     /// How surfaces are shaded
     #[arg(long, value_enum, default_value_t)]
@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     /// Keep the noise of few samples as it is
     #[arg(long)]
     no_denoise: bool,
-    /// Triangles of the built-in scene, about
+    /// Triangles of the built-in scene
     #[arg(long, value_name = "N", default_value_t = 100_000, conflicts_with = "mesh")]
     triangles: usize,
     #[command(flatten)]

@@ -8,28 +8,28 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// A folder with meshes in it, and the command run in it.
-pub struct Bench {
+pub(crate) struct Bench {
     folder: TempDir,
 }
 
 impl Bench {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let bench = Self { folder: tempfile::tempdir().expect("a temporary folder") };
         bench.write("knot.off", &off(&kdray_mesh::generate::torus_knot([2, 3], 60, 12)));
         bench.write("cube.off", &off(&kdray_mesh::generate::cube()));
         bench
     }
 
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
-    pub fn write(&self, name: &str, content: &str) {
+    pub(crate) fn write(&self, name: &str, content: &str) {
         fs::write(self.path(name), content).expect("the folder can be written");
     }
 
     /// The names of all files, in order.
-    pub fn files(&self) -> Vec<String> {
+    pub(crate) fn files(&self) -> Vec<String> {
         let entries = fs::read_dir(self.folder.path()).expect("the folder can be read");
         let name = |entry: fs::DirEntry| entry.file_name().into_string().expect("a plain name");
         let mut names: Vec<String> = entries.map(|entry| name(entry.expect("an entry"))).collect();
@@ -38,14 +38,14 @@ impl Bench {
     }
 
     /// The command, with arguments that spaces part.
-    pub fn kdray(&self, arguments: &str) -> Command {
+    pub(crate) fn kdray(&self, arguments: &str) -> Command {
         let mut command = Command::new(assert_cmd::cargo::cargo_bin!("kdray"));
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
         command
     }
 
     /// The one JSON object that a successful command prints.
-    pub fn json(&self, arguments: &str) -> Value {
+    pub(crate) fn json(&self, arguments: &str) -> Value {
         let output = self.kdray(arguments).assert().success().get_output().stdout.clone();
         let value: Value = serde_json::from_slice(&output).expect("one JSON value and no more");
         assert!(value.is_object(), "{value}");
@@ -53,7 +53,7 @@ impl Bench {
     }
 
     /// The one line that a failing command says on standard error.
-    pub fn error(&self, arguments: &str) -> String {
+    pub(crate) fn error(&self, arguments: &str) -> String {
         let output = self.kdray(arguments).assert().code(1).get_output().stderr.clone();
         let text = String::from_utf8(output).expect("text");
         assert_eq!(text.lines().count(), 1, "{text}");

@@ -11,8 +11,11 @@ use crate::scene::Scene;
 use crate::warp::cosine_hemisphere;
 use crate::{Camera, Cancelled, Picture, RenderOptions, tone};
 
-/// Radiance of what nothing is near of.
+/// Radiance of a surface with nothing near it.
 const OPEN: Vec3 = Vec3::splat(0.86);
+
+/// Radiance of what is behind all surfaces.
+const BACKDROP: Vec3 = Vec3::splat(0.5);
 
 pub(super) fn picture(
     scene: &Scene,
@@ -22,11 +25,12 @@ pub(super) fn picture(
     let reach = options.reach * scene.diagonal;
     let shade = |probe: &mut Probe, ray: &Ray, sampler: &mut Sampler| {
         let Some(point) = probe.closest(ray) else {
-            return Sample { light: OPEN, surface: None };
+            return Sample { light: BACKDROP, surface: None };
         };
         let direction = cosine_hemisphere(point.shading, sampler.next());
         let feeler = Ray { t_max: reach, ..point.leave(direction) };
-        let light = if probe.occluded(&feeler) { point.haze * OPEN } else { OPEN };
+        let open = if probe.occluded(&feeler) { Vec3::ZERO } else { OPEN };
+        let light = open.lerp(BACKDROP, point.haze);
         let surface =
             Surface { position: point.position, normal: point.shading, albedo: Vec3::ONE };
         Sample { light, surface: Some(surface) }

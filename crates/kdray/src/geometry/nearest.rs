@@ -11,23 +11,23 @@ pub(crate) struct Nearest {
 
 type Vector = [f64; 3];
 
-/// The nearest point of the triangle, in double precision \[Eri05], section 5.1.5.
+/// The nearest point of the triangle, in double precision: the foot on its plane, or the nearest of
+/// the nearest points of its edges \[Eri05].
 ///
 /// Degenerate triangles are the segments or points that they are.
 pub(crate) fn nearest_on_triangle(point: [f32; 3], corners: &[[f32; 3]; 3]) -> Nearest {
     let p = point.map(f64::from);
     let [a, b, c] = corners.map(|corner| corner.map(f64::from));
-    let (ab, ac) = (sub(b, a), sub(c, a));
-    let (ap, bp, cp) = (sub(p, a), sub(p, b), sub(p, c));
-    let (d1, d2) = (dot(ab, ap), dot(ac, ap));
-    let (d3, d4) = (dot(ab, bp), dot(ac, bp));
-    let (d5, d6) = (dot(ab, cp), dot(ac, cp));
-    // Areas of the triangles that the projected point makes with the edges.
-    let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
-    let inside = va > 0.0 && vb > 0.0 && vc > 0.0;
-    if inside {
-        let scale = 1.0 / (va + vb + vc);
-        return at(p, [a, b, c], vb * scale, vc * scale);
+    let normal = cross(sub(b, a), sub(c, a));
+    let length = dot(normal, normal);
+    let inward = |from: Vector, to: Vector| dot(cross(normal, sub(to, from)), sub(p, from));
+    let sides = [inward(b, c), inward(c, a), inward(a, b)];
+    if length > 0.0 && sides.iter().all(|side| *side > 0.0) {
+        // The foot on the plane is precise where weighted corners of a sliver would not be.
+        let height = dot(normal, sub(p, a)) / length;
+        let point = [0, 1, 2].map(|axis| p[axis] - height * normal[axis]);
+        let [_, u, v] = sides.map(|side| side / length);
+        return Nearest { point, squared_distance: height * height * length, u, v };
     }
     let edges = [on_edge(p, a, b), on_edge(p, a, c), on_edge(p, b, c)];
     let candidates = [
@@ -57,6 +57,10 @@ fn at(p: Vector, [a, b, c]: [Vector; 3], u: f64, v: f64) -> Nearest {
 
 fn sub(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn cross(a: Vector, b: Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 fn dot(a: Vector, b: Vector) -> f64 {

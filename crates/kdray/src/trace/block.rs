@@ -63,11 +63,11 @@ impl Block {
     }
 
     /// The lanes whose edge functions do not differ in sign: surely crossed if none is zero. The
-    /// arithmetic is that of [`crossing`].
+    /// arithmetic is that of [`crossing`]. `V` is the visitor of the traversal, whose own it is.
     #[cfg(target_arch = "x86_64")]
     #[inline]
     #[target_feature(enable = "avx2")]
-    pub(super) fn filter_avx2(&self, shear: &Shear) -> Filtered {
+    pub(super) fn filter_avx2<V>(&self, shear: &Shear) -> Filtered {
         use std::arch::x86_64::*;
         // SAFETY: rows are eight lanes, aligned like the block.
         let row = |corner: usize, axis: usize| unsafe {

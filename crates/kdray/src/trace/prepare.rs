@@ -88,8 +88,8 @@ impl Slabs {
         for axis in 0..3 {
             let lower = (bounds.lower[axis] - self.origin[axis]) * self.inverse[axis];
             let upper = (bounds.upper[axis] - self.origin[axis]) * self.inverse[axis];
-            t_min = t_min.max(lower.min(upper) - self.thickness[axis]);
-            t_max = t_max.min(lower.max(upper) + self.thickness[axis]);
+            t_min = greater(t_min, lesser(lower, upper) - self.thickness[axis]);
+            t_max = lesser(t_max, greater(lower, upper) + self.thickness[axis]);
         }
         (t_min, t_max)
     }
@@ -98,4 +98,16 @@ impl Slabs {
 /// The largest coordinate of a box.
 pub(super) fn reach(bounds: &Aabb) -> f32 {
     bounds.lower.iter().chain(&bounds.upper).fold(0.0, |largest, v| v.abs().max(largest))
+}
+
+/// The lesser of two numbers; one instruction, because neither is NaN.
+#[inline(always)]
+pub(super) fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two numbers; one instruction, because neither is NaN.
+#[inline(always)]
+pub(super) fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }

@@ -1,7 +1,7 @@
 //! Visit the leaves along a ray from front to back, with a stack \[PH04].
 
 use super::block::{Block, Filtered};
-use super::prepare::{Shear, Slabs};
+use super::prepare::{Shear, Slabs, lesser};
 use super::stack::{Stack, Visit};
 use super::step;
 use super::wide::{Child, Layout, Wide};
@@ -67,12 +67,12 @@ struct Entry<'a> {
 impl Entry<'_> {
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
-    fn traverse_avx2(&self, visitor: &mut impl Visitor) {
+    fn traverse_avx2<V: Visitor>(&self, visitor: &mut V) {
         let lanes = step::avx2::Lanes::new(self.slabs);
         let step = |wide: &Wide, interval: [f32; 2], stack: &mut Stack| {
-            step::avx2::step(wide, self.slabs, &lanes, interval, stack)
+            step::avx2::step::<V>(wide, self.slabs, &lanes, interval, stack)
         };
-        self.traverse_with(visitor, step, |block| block.filter_avx2(&self.shear));
+        self.traverse_with(visitor, step, |block| block.filter_avx2::<V>(&self.shear));
     }
 
     /// The traversal, with a way to step down and one to filter the triangles of a block.
@@ -93,7 +93,7 @@ impl Entry<'_> {
             }
             let Some(first) = child.block() else {
                 visitor.step();
-                let interval = [t_min, t_max.min(until)];
+                let interval = [t_min, lesser(t_max, until)];
                 // SAFETY: children of a layout are in it.
                 let wide = unsafe { self.layout.wides.get_unchecked(child.0 as usize) };
                 nearest = step(wide, interval, &mut stack);
@@ -108,7 +108,7 @@ impl Entry<'_> {
                     let lane = lanes.trailing_zeros() as usize;
                     lanes &= lanes - 1;
                     let Some(hit) = block.hit(lane, filtered, &self.shear) else { continue };
-                    until = until.min(visitor.hit(hit));
+                    until = lesser(until, visitor.hit(hit));
                     if until == ENOUGH {
                         return;
                     }

@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     /// How often everything is measured; the best pass counts
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one)]
     passes: usize,
-    /// Triangles of the built-in scene, about
+    /// Triangles of the built-in scene
     #[arg(long, value_name = "N", default_value_t = 100_000, conflicts_with = "meshes")]
     triangles: usize,
     #[command(flatten)]

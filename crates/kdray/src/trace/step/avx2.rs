@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::super::prepare::Slabs;
+use super::super::prepare::{Slabs, greater, lesser};
 use super::super::stack::{Stack, Visit};
 use super::super::wide::{Child, Wide};
 
@@ -28,9 +28,12 @@ impl Lanes {
 }
 
 /// As [`super::step`].
+///
+/// `V` is the visitor of the traversal, so that each traversal has a step of its own and the
+/// compiler makes it part of the loop: a call would send every lane through memory.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub(in super::super) fn step(
+pub(in super::super) fn step<V>(
     wide: &Wide,
     slabs: &Slabs,
     lanes: &Lanes,
@@ -42,10 +45,10 @@ pub(in super::super) fn step(
     let top = [top - slabs.thickness[axis], top + slabs.thickness[axis]];
     let backward = slabs.backward >> axis & 1;
 
-    let turned = Turned::new(wide, lanes, backward);
-    let [t_min, t_max] = turned.intervals(interval, top);
-    let children = turned.children();
-    take_met([children, t_min, t_max], stack)
+    let turned = Turned::new::<V>(wide, lanes, backward);
+    let [t_min, t_max] = turned.intervals::<V>(interval, top);
+    let children = turned.children::<V>();
+    take_met::<V>([children, t_min, t_max], stack)
 }
 
 /// A wide node as the ray sees it: the near half in the low lanes.
@@ -65,7 +68,7 @@ struct Turned {
 impl Turned {
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn new(wide: &Wide, lanes: &Lanes, backward: u32) -> Self {
+    fn new<V>(wide: &Wide, lanes: &Lanes, backward: u32) -> Self {
         let near = 4 * backward as usize;
         // SAFETY: both halves are four of eight lanes.
         let (planes, children) = unsafe {
@@ -106,11 +109,11 @@ impl Turned {
     /// The part of the ray inside each child, in the order in which the ray comes to them.
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn intervals(&self, [t_min, t_max]: [f32; 2], top: [f32; 2]) -> [__m256; 2] {
+    fn intervals<V>(&self, [t_min, t_max]: [f32; 2], top: [f32; 2]) -> [__m256; 2] {
         let (never, ever) = (_mm256_set1_ps(f32::NEG_INFINITY), _mm256_set1_ps(f32::INFINITY));
         // First level: the near half leaves at the plane, the far half enters there.
-        let t_mins = _mm256_set_m128(_mm_set1_ps(t_min.max(top[0])), _mm_set1_ps(t_min));
-        let t_maxs = _mm256_set_m128(_mm_set1_ps(t_max), _mm_set1_ps(t_max.min(top[1])));
+        let t_mins = _mm256_set_m128(_mm_set1_ps(greater(t_min, top[0])), _mm_set1_ps(t_min));
+        let t_maxs = _mm256_set_m128(_mm_set1_ps(t_max), _mm_set1_ps(lesser(t_max, top[1])));
 
         // Second level: the near quarters are the even pairs.
         let enter = _mm256_permute_ps::<0>(self.enter);
@@ -129,7 +132,7 @@ impl Turned {
     /// The children, in that order.
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn children(&self) -> __m256 {
+    fn children<V>(&self) -> __m256 {
         let quarter = _mm256_and_si256(self.second, _mm256_set1_epi32(2));
         let eighth = _mm256_and_si256(self.third, _mm256_set1_epi32(1));
         let turned = _mm256_or_si256(quarter, eighth);
@@ -148,7 +151,7 @@ struct Spilled([f32; 8]);
 /// it is known which of them is wanted.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn take_met([children, t_mins, t_maxs]: [__m256; 3], stack: &mut Stack) -> Option<Visit> {
+fn take_met<V>([children, t_mins, t_maxs]: [__m256; 3], stack: &mut Stack) -> Option<Visit> {
     let met = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(t_mins, t_maxs));
     let nothing = _mm256_set1_epi32(Child::EMPTY.0 as i32);
     let empty = _mm256_cmpeq_epi32(_mm256_castps_si256(children), nothing);

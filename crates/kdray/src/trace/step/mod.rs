@@ -3,7 +3,7 @@
 #[cfg(target_arch = "x86_64")]
 pub(super) mod avx2;
 
-use super::prepare::Slabs;
+use super::prepare::{Slabs, greater, lesser};
 use super::stack::{Stack, Visit};
 use super::wide::{Child, Wide};
 
@@ -28,7 +28,7 @@ pub(super) fn step(
         let (mut t_min, mut t_max) = (interval[0], interval[1]);
         let mut pass = |lane: usize, far: usize| {
             let [enter, leave] = planes[lane];
-            if far == 1 { t_min = t_min.max(enter) } else { t_max = t_max.min(leave) }
+            if far == 1 { t_min = greater(t_min, enter) } else { t_max = lesser(t_max, leave) }
         };
         // By level: whether the child is beyond the plane.
         let far = [rank >> 2, rank >> 1 & 1, rank & 1];
@@ -101,7 +101,7 @@ mod tests {
             let plain = visits(nearest, plain);
             // SAFETY: the processor has AVX2.
             let nearest = unsafe {
-                avx2::step(&wide, &slabs, &avx2::Lanes::new(&slabs), interval, &mut lanes)
+                avx2::step::<()>(&wide, &slabs, &avx2::Lanes::new(&slabs), interval, &mut lanes)
             };
             met += plain.len();
             assert_eq!(plain, visits(nearest, lanes), "{wide:?} {slabs:?} {interval:?}");
