@@ -61,12 +61,14 @@ pub fn squared_distance(point: [f32; 3], corners: &[[f32; 3]; 3]) -> f64 {
     let normal = cross(minus(b, a), minus(c, a));
     let length = dot(normal, normal);
     let inward = |p: Vector, q: Vector| dot(cross(normal, minus(q, p)), minus(point, p)) >= 0.0;
+    let edges = [(a, b), (b, c), (c, a)];
+    let edges = edges.into_iter().map(|(p, q)| squared_from_segment(point, p, q));
+    let nearest = edges.fold(f64::INFINITY, f64::min);
     if length > 0.0 && inward(a, b) && inward(b, c) && inward(c, a) {
         let height = dot(normal, minus(point, a));
-        return height * height / length;
+        return nearest.min(height * height / length);
     }
-    let edges = [(a, b), (b, c), (c, a)];
-    edges.into_iter().map(|(p, q)| squared_from_segment(point, p, q)).fold(f64::INFINITY, f64::min)
+    nearest
 }
 
 /// Squared distance of a point from the mesh.

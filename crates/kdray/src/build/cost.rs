@@ -25,7 +25,7 @@ pub struct Cost {
 impl Default for Cost {
     /// The prices that traced fastest for their memory; `bench/` has the measurement.
     fn default() -> Self {
-        Self { traversal: 2.0, intersect: 1.0, empty_bonus: 0.2 }
+        Self { traversal: 4.0, intersect: 1.0, empty_bonus: 0.2 }
     }
 }
 

@@ -32,8 +32,12 @@ impl Aabb {
 
     /// The smallest box that holds both.
     #[must_use]
-    pub fn union(self, other: &Self) -> Self {
-        self.union_point(other.lower).union_point(other.upper)
+    pub fn union(mut self, other: &Self) -> Self {
+        for axis in 0..3 {
+            self.lower[axis] = self.lower[axis].min(other.lower[axis]);
+            self.upper[axis] = self.upper[axis].max(other.upper[axis]);
+        }
+        self
     }
 
     /// The box cut in two by the plane `axis = position`.
@@ -90,6 +94,9 @@ mod tests {
     fn the_empty_box_is_neutral_under_union() {
         let point = [1.0, -2.0, 3.0];
         assert!(Aabb::EMPTY.is_empty());
-        assert_eq!(Aabb::EMPTY.union_point(point), Aabb { lower: point, upper: point });
+        let just_that = Aabb { lower: point, upper: point };
+        assert_eq!(Aabb::EMPTY.union_point(point), just_that);
+        assert_eq!(just_that.union(&Aabb::EMPTY), just_that);
+        assert_eq!(Aabb::EMPTY.union(&just_that), just_that);
     }
 }

@@ -21,14 +21,6 @@ pub(crate) fn nearest_on_triangle(point: [f32; 3], corners: &[[f32; 3]; 3]) -> N
     let normal = cross(sub(b, a), sub(c, a));
     let length = dot(normal, normal);
     let inward = |from: Vector, to: Vector| dot(cross(normal, sub(to, from)), sub(p, from));
-    let sides = [inward(b, c), inward(c, a), inward(a, b)];
-    if length > 0.0 && sides.iter().all(|side| *side > 0.0) {
-        // The foot on the plane is precise where weighted corners of a sliver would not be.
-        let height = dot(normal, sub(p, a)) / length;
-        let point = [0, 1, 2].map(|axis| p[axis] - height * normal[axis]);
-        let [_, u, v] = sides.map(|side| side / length);
-        return Nearest { point, squared_distance: height * height * length, u, v };
-    }
     let edges = [on_edge(p, a, b), on_edge(p, a, c), on_edge(p, b, c)];
     let candidates = [
         at(p, [a, b, c], edges[0], 0.0),
@@ -38,7 +30,17 @@ pub(crate) fn nearest_on_triangle(point: [f32; 3], corners: &[[f32; 3]; 3]) -> N
     let nearer = |best: Nearest, other: Nearest| {
         if other.squared_distance < best.squared_distance { other } else { best }
     };
-    nearer(nearer(candidates[0], candidates[1]), candidates[2])
+    let outline = nearer(nearer(candidates[0], candidates[1]), candidates[2]);
+    let sides = [inward(b, c), inward(c, a), inward(a, b)];
+    if length > 0.0 && sides.iter().all(|side| *side > 0.0) {
+        // The foot on the plane is precise where weighted corners of a sliver would not be.
+        let height = dot(normal, sub(p, a)) / length;
+        let point = [0, 1, 2].map(|axis| p[axis] - height * normal[axis]);
+        let [_, u, v] = sides.map(|side| side / length);
+        let foot = Nearest { point, squared_distance: height * height * length, u, v };
+        return nearer(foot, outline);
+    }
+    outline
 }
 
 /// How far along the edge from `a` to `b` its nearest point is.

@@ -1,9 +1,10 @@
 //! Trace rays through a tree.
 //!
-//! `wide` lays the tree out three levels to a cache line, `prepare` makes of a ray what
-//! traversal needs, `traverse` visits the leaves along it from front to back by `step`s down,
-//! `block` tests the triangles of a leaf eight at a time, and [`intersect`] says for one
-//! triangle what a hit is: it is the definition that everything else is tested against.
+//! `wide` lays the tree out in nodes of eight boxes, `prepare` makes of a ray what traversal needs,
+//! `traverse` visits the leaves along it from front to back by `step`s down, `block` filters the
+//! triangles of a leaf eight at a time, and `intersect` says for one triangle what a hit is: it is
+//! the definition that everything else is tested against. `hits` keeps what the queries want of the
+//! hits. `near` visits the leaves around a point, for the queries of `proximity`.
 
 mod batch;
 mod block;

@@ -42,20 +42,23 @@ impl Shear {
 }
 
 /// A ray that will be clipped against planes.
+///
+/// The planes of a box at `lower` and `upper` are passed at `t = position * inverse - offset`, a
+/// little earlier by `enter` or a little later by `leave`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slabs {
-    pub(super) origin: [f32; 3],
     /// One over the direction; huge where the direction is zero.
     pub(super) inverse: [f32; 3],
-    /// How much of `t` a plane is thick.
-    pub(super) thickness: [f32; 3],
-    /// A bit for every axis along which the ray goes down.
-    pub(super) backward: u32,
+    pub(super) enter: [f32; 3],
+    pub(super) leave: [f32; 3],
+    /// By axis: 1 where the ray goes down, so that the upper plane comes first.
+    pub(super) backward: [usize; 3],
 }
 
-/// Rounding moves a ray, as its triangle tests see it, by less than this many half ulps of the
-/// largest coordinate in play: three for translating and shearing a corner, and those of `t`.
-const THICKNESS: f32 = 16.0 * 0.5 * f32::EPSILON;
+/// Rounding moves a ray, as its triangle tests and its planes see it, by less than this many half
+/// ulps of the largest coordinate in play: three for translating and shearing a corner, those of
+/// `t`, and three for the products and differences here.
+const THICKNESS: f32 = 20.0 * 0.5 * f32::EPSILON;
 
 /// Directions are not let be smaller, relative to their largest component: that moves the ray by
 /// less than a plane is thick, and keeps one over them finite.
@@ -63,35 +66,26 @@ const SMALLEST: f32 = 1e-9;
 
 impl Slabs {
     /// Planes get a thickness that covers every rounding of the triangle tests and of the planes'
-    /// own `t`, so that the leaf of every hit is visited: a leaf is entered if the ray meets its
-    /// box grown by that thickness.
+    /// own `t`, so that the leaf of every hit is visited: a box is entered if the ray meets it
+    /// grown by that thickness.
     #[inline(always)]
     pub(super) fn new(ray: &Ray, reach: f32) -> Self {
-        let magnitude = |v: &[f32; 3]| v[0].abs().max(v[1].abs()).max(v[2].abs());
+        let magnitude = |v: &[f32; 3]| greater(greater(v[0].abs(), v[1].abs()), v[2].abs());
         let smallest = SMALLEST * magnitude(&ray.direction);
         let thickness = THICKNESS * (magnitude(&ray.origin) + reach);
         let mut slabs =
-            Self { origin: ray.origin, inverse: [0.0; 3], thickness: [0.0; 3], backward: 0 };
+            Self { inverse: [0.0; 3], enter: [0.0; 3], leave: [0.0; 3], backward: [0; 3] };
         for axis in 0..3 {
             let d = ray.direction[axis];
             let inverse = 1.0 / if d.abs() < smallest { smallest.copysign(d) } else { d };
+            let offset = ray.origin[axis] * inverse;
+            let thick = thickness * inverse.abs();
             slabs.inverse[axis] = inverse;
-            slabs.thickness[axis] = thickness * inverse.abs();
-            slabs.backward |= u32::from(inverse < 0.0) << axis;
+            slabs.enter[axis] = offset + thick;
+            slabs.leave[axis] = offset - thick;
+            slabs.backward[axis] = usize::from(inverse < 0.0);
         }
         slabs
-    }
-
-    /// The part of `t_min..=t_max` inside `bounds`; empty if the first is larger.
-    #[inline(always)]
-    pub(super) fn clip(&self, bounds: &Aabb, mut t_min: f32, mut t_max: f32) -> (f32, f32) {
-        for axis in 0..3 {
-            let lower = (bounds.lower[axis] - self.origin[axis]) * self.inverse[axis];
-            let upper = (bounds.upper[axis] - self.origin[axis]) * self.inverse[axis];
-            t_min = greater(t_min, lesser(lower, upper) - self.thickness[axis]);
-            t_max = lesser(t_max, greater(lower, upper) + self.thickness[axis]);
-        }
-        (t_min, t_max)
     }
 }
 

@@ -49,7 +49,7 @@ impl Tracer {
         let limit = f64::from(max_distance) * f64::from(max_distance);
         let mut search = Search { point, limit, best: None };
         let until = rounded_up(limit);
-        visit_near(&self.layout, &self.bounds, point, until, &mut search);
+        visit_near(&self.layout, point, until, &mut search);
         let (triangle, nearest) = search.best?;
         Some(ClosestPoint {
             point: nearest.point.map(|value| value as f32),
@@ -69,7 +69,7 @@ impl Tracer {
         }
         let limit = f64::from(radius) * f64::from(radius);
         let mut within = Within { center, limit, triangles };
-        visit_near(&self.layout, &self.bounds, center, rounded_up(limit), &mut within);
+        visit_near(&self.layout, center, rounded_up(limit), &mut within);
         triangles.sort_unstable();
         triangles.dedup();
     }

@@ -5,59 +5,49 @@ use std::mem::MaybeUninit;
 use super::wide::Child;
 use crate::build::MAX_DEPTH;
 
-/// Every step takes one entry and puts back at most eight, and goes down three levels; a store of
-/// eight lanes needs room for all of them.
-const CAPACITY: usize = 7 * (MAX_DEPTH as usize / 3 + 2) + 8;
+/// Every step takes one visit and puts back at most eight, and goes down a level at least.
+const CAPACITY: usize = 7 * (MAX_DEPTH as usize + 1) + 8;
 
-/// A subtree to be visited, and the part of the ray inside it.
+/// A subtree to be visited, and where the ray enters it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Visit {
     pub(super) child: Child,
     pub(super) t_min: f32,
-    pub(super) t_max: f32,
 }
 
 /// A stack of visits.
 pub(super) struct Stack {
-    children: [MaybeUninit<Child>; CAPACITY],
-    t_min: [MaybeUninit<f32>; CAPACITY],
-    t_max: [MaybeUninit<f32>; CAPACITY],
+    visits: [MaybeUninit<Visit>; CAPACITY],
     height: usize,
 }
 
 impl Stack {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Self {
-            children: [const { MaybeUninit::uninit() }; CAPACITY],
-            t_min: [const { MaybeUninit::uninit() }; CAPACITY],
-            t_max: [const { MaybeUninit::uninit() }; CAPACITY],
-            height: 0,
-        }
+        Self { visits: [const { MaybeUninit::uninit() }; CAPACITY], height: 0 }
     }
 
     #[inline(always)]
     pub(super) fn push(&mut self, visit: Visit) {
-        self.children[self.height].write(visit.child);
-        self.t_min[self.height].write(visit.t_min);
-        self.t_max[self.height].write(visit.t_max);
+        self.visits[self.height].write(visit);
         self.height += 1;
     }
 
-    /// Pushes the first `count` lanes of children, `t_min` and `t_max`.
-    #[cfg(target_arch = "x86_64")]
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    pub(super) fn push_lanes(&mut self, lanes: [std::arch::x86_64::__m256; 3], count: usize) {
-        use std::arch::x86_64::_mm256_storeu_ps;
-        debug_assert!(self.height + 8 <= CAPACITY, "trees are at most MAX_DEPTH deep");
-        // SAFETY: there is room for eight more entries, because a tree is at most MAX_DEPTH deep.
-        unsafe {
-            _mm256_storeu_ps(self.children.as_mut_ptr().add(self.height).cast(), lanes[0]);
-            _mm256_storeu_ps(self.t_min.as_mut_ptr().add(self.height).cast(), lanes[1]);
-            _mm256_storeu_ps(self.t_max.as_mut_ptr().add(self.height).cast(), lanes[2]);
+    /// Pushes a visit below those of the last `count` that are nearer.
+    #[inline(always)]
+    pub(super) fn insert(&mut self, visit: Visit, count: usize) {
+        self.push(visit);
+        let mut place = self.height - 1;
+        for _ in 0..count {
+            // SAFETY: everything below the height was written.
+            let before = unsafe { self.visits[place - 1].assume_init() };
+            if before.t_min >= visit.t_min {
+                break;
+            }
+            self.visits[place].write(before);
+            place -= 1;
         }
-        self.height += count;
+        self.visits[place].write(visit);
     }
 
     /// The visit on top.
@@ -65,12 +55,23 @@ impl Stack {
     pub(super) fn pop(&mut self) -> Option<Visit> {
         self.height = self.height.checked_sub(1)?;
         // SAFETY: everything below the old height was written.
-        unsafe {
-            Some(Visit {
-                child: self.children.get_unchecked(self.height).assume_init(),
-                t_min: self.t_min.get_unchecked(self.height).assume_init(),
-                t_max: self.t_max.get_unchecked(self.height).assume_init(),
-            })
+        Some(unsafe { self.visits.get_unchecked(self.height).assume_init() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inserted_visits_are_popped_from_near_to_far() {
+        let mut stack = Stack::new();
+        let visit = |t_min| Visit { child: Child(0), t_min };
+        stack.push(visit(0.5));
+        for (count, t_min) in [3.0, 1.0, 4.0, 1.0, 2.0].into_iter().enumerate() {
+            stack.insert(visit(t_min), count);
         }
+        let order: Vec<f32> = std::iter::from_fn(|| stack.pop()).map(|v| v.t_min).collect();
+        assert_eq!(order, [1.0, 1.0, 2.0, 3.0, 4.0, 0.5]);
     }
 }

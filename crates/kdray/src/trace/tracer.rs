@@ -4,22 +4,21 @@ use super::only::Only;
 use super::prepare::{Slabs, reach};
 use super::traverse::{Visitor, traverse};
 use super::wide::Layout;
-use crate::geometry::{Aabb, Hit, Mesh, Ray};
+use crate::geometry::{Hit, Mesh, Ray};
 use crate::tree::Tree;
 
 /// Answers queries over a mesh and its tree. Owns what it needs; share it between threads.
 ///
-/// Takes about 40 bytes a reference: triangles are copied in leaf order, eight to a block.
+/// Copies triangles in leaf order, eight to a block: [`Tracer::size_bytes`] says what that takes.
 pub struct Tracer {
     pub(super) layout: Layout,
-    pub(super) bounds: Aabb,
     reach: f32,
 }
 
 /// What a ray met on its way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Wide nodes: three levels of the tree each.
+    /// Wide nodes: eight descendants of a node of the tree each.
     pub steps: u32,
     /// Leaves that have references.
     pub leaves: u32,
@@ -36,8 +35,7 @@ impl Tracer {
     #[must_use]
     pub fn new(mesh: &Mesh, tree: &Tree) -> Self {
         assert_eq!(mesh.triangles().len(), tree.triangle_count(), "the tree is of another mesh");
-        let bounds = tree.bounds();
-        Self { layout: Layout::new(mesh, tree), bounds, reach: reach(&bounds) }
+        Self { layout: Layout::new(mesh, tree), reach: reach(&tree.bounds()) }
     }
 
     /// Queries that see only the triangles for which `accept` holds: a visibility mask, or
@@ -118,7 +116,7 @@ impl Tracer {
     pub(super) fn visit(&self, ray: &Ray, visitor: &mut impl Visitor) {
         if ray.is_valid() {
             let slabs = Slabs::new(ray, self.reach);
-            traverse(&self.layout, &self.bounds, ray, &slabs, visitor);
+            traverse(&self.layout, ray, &slabs, visitor);
         }
     }
 }

@@ -1,42 +1,34 @@
-//! The tree as traversal reads it: three levels in a node of one cache line.
+//! The tree as traversal reads it: nodes of eight boxes.
 //!
-//! A wide node has the seven planes of three levels of the tree and its eight grandchildren, so a
-//! ray takes a third of the steps. All eight intervals of `t` are worked out together, in the
-//! order in which the ray comes to them: that follows from the signs of its direction alone.
+//! Wide nodes are made from the exact tree: a node stands for a subtree of it, cut off below eight
+//! descendants. These are the ones that a ray is most likely to meet, found by opening the one with
+//! the largest surface again and again; empty leaves are left out. A child's box holds the parts
+//! of its triangles inside its cell and is often much smaller than the cell. The cells do not
+//! overlap, so neither do the boxes, and a ray comes to them one after the other.
+
+use rayon::prelude::*;
 
 use super::block::{Block, LANES};
-use crate::geometry::Mesh;
+use crate::geometry::clip::clip;
+use crate::geometry::{Aabb, Mesh};
 use crate::memory::with_huge_pages;
 use crate::tree::{Kind, Node, Tree};
 
-/// Three levels of the tree.
-///
-/// ```text
-///                planes[3]                      lane   0  1  2   3   4  5  6   7
-///        planes[0]      planes[4]               plane  b  d  e   a   c  f  g   axes
-///      [1]     [2]     [5]     [6]
-///     0   1   2   3   4   5   6   7  children
-/// ```
-///
-/// The last lane holds the axes of the others, two bits each. Where the tree ends early, planes
-/// are infinite and the leaf is the leftmost of the children it stands for.
-#[repr(C, align(64))]
+/// Eight boxes, and what is in them. Free places have empty boxes.
+#[repr(C, align(32))]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Wide {
-    pub(super) planes: [f32; 8],
+    /// By end (lower, upper), axis and child.
+    pub(super) bounds: [[[f32; 8]; 3]; 2],
     pub(super) children: [Child; 8],
 }
 
-/// What lies below a wide node: another one, the first of a leaf's blocks, or nothing.
+/// What is in a box: another wide node, or the first of a leaf's blocks.
 #[repr(transparent)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Child(pub(super) u32);
 
-const _: () = assert!(size_of::<Wide>() == 64, "a cache line");
-
 impl Child {
-    /// A leaf without references.
-    pub(super) const EMPTY: Self = Self(u32::MAX);
     const LEAF: u32 = 1 << 31;
 
     /// The first block of a leaf, or `None` for a wide node.
@@ -47,17 +39,17 @@ impl Child {
 }
 
 impl Wide {
-    const NO_PLANES: Self = Self { planes: [f32::INFINITY; 8], children: [Child::EMPTY; 8] };
+    pub(super) const EMPTY: Self = Self {
+        bounds: [[[f32::INFINITY; 8]; 3], [[f32::NEG_INFINITY; 8]; 3]],
+        children: [Child(0); 8],
+    };
 
-    /// The axes of all lanes, two bits each from the lowest on.
-    #[inline(always)]
-    pub(super) fn axes(&self) -> u32 {
-        self.planes[7].to_bits()
-    }
-
-    fn set_plane(&mut self, lane: usize, axis: usize, position: f32) {
-        self.planes[lane] = position;
-        self.planes[7] = f32::from_bits(self.axes() | (axis as u32) << (2 * lane));
+    pub(super) fn set(&mut self, place: usize, bounds: &Aabb, child: Child) {
+        for axis in 0..3 {
+            self.bounds[0][axis][place] = bounds.lower[axis];
+            self.bounds[1][axis][place] = bounds.upper[axis];
+        }
+        self.children[place] = child;
     }
 }
 
@@ -69,18 +61,10 @@ pub(super) struct Layout {
 
 impl Layout {
     pub(super) fn new(mesh: &Mesh, tree: &Tree) -> Self {
-        let mut collapse = Collapse {
-            mesh,
-            nodes: tree.nodes(),
-            references: tree.references(),
-            layout: Self { wides: Vec::new(), blocks: with_huge_pages(block_count(tree)) },
-        };
-        match tree.nodes()[0].kind() {
-            Kind::Inner { .. } => {
-                collapse.child(0);
-            }
-            Kind::Leaf { .. } => collapse.leaf_alone(),
-        }
+        let bounds = tight_bounds(mesh, tree);
+        let layout = Self { wides: Vec::new(), blocks: with_huge_pages(block_count(tree)) };
+        let mut collapse = Collapse { mesh, tree, bounds, layout };
+        collapse.wide(0);
         let Self { wides, blocks } = collapse.layout;
         let mut compact = with_huge_pages(wides.len());
         compact.extend_from_slice(&wides);
@@ -97,73 +81,92 @@ fn block_count(tree: &Tree) -> usize {
     tree.nodes().iter().map(blocks).sum()
 }
 
+/// By node: bounds of the parts of its triangles inside its cell.
+fn tight_bounds(mesh: &Mesh, tree: &Tree) -> Vec<Aabb> {
+    let nodes = tree.nodes();
+    let mut bounds = vec![tree.bounds(); nodes.len()];
+    for (index, node) in nodes.iter().enumerate() {
+        if let Kind::Inner { axis, position, right } = node.kind() {
+            let [left_cell, right_cell] = bounds[index].cut(axis, position);
+            (bounds[index + 1], bounds[right]) = (left_cell, right_cell);
+        }
+    }
+    bounds.par_iter_mut().zip(nodes).for_each(|(bounds, node)| {
+        if let Kind::Leaf { first, count } = node.kind() {
+            let triangles = &tree.references()[first..first + count];
+            let part = |triangle: &u32| clip(&mesh.triangle(*triangle as usize), bounds);
+            *bounds =
+                triangles.iter().filter_map(part).fold(Aabb::EMPTY, |all, part| all.union(&part));
+        }
+    });
+    for (index, node) in nodes.iter().enumerate().rev() {
+        if let Kind::Inner { right, .. } = node.kind() {
+            bounds[index] = bounds[index + 1].union(&bounds[right]);
+        }
+    }
+    bounds
+}
+
 struct Collapse<'a> {
     mesh: &'a Mesh,
-    nodes: &'a [Node],
-    references: &'a [u32],
+    tree: &'a Tree,
+    bounds: Vec<Aabb>,
     layout: Layout,
 }
 
 impl Collapse<'_> {
-    /// A tree that is one leaf gets a node above it.
-    fn leaf_alone(&mut self) {
-        self.layout.wides.push(Wide::NO_PLANES);
-        let mut wide = Wide { planes: [f32::INFINITY; 8], ..Wide::NO_PLANES };
-        wide.planes[7] = 0.0;
-        wide.children[0] = self.child(0);
-        self.layout.wides[0] = wide;
+    /// Lays out the subtree at `node` below a wide node of its own; gives that node's index.
+    fn wide(&mut self, node: usize) -> u32 {
+        let index = self.layout.wides.len();
+        self.layout.wides.push(Wide::EMPTY);
+        let mut wide = Wide::EMPTY;
+        for (place, descendant) in self.descendants(node).into_iter().enumerate() {
+            let bounds = self.bounds[descendant];
+            let child = self.child(descendant);
+            wide.set(place, &bounds, child);
+        }
+        self.layout.wides[index] = wide;
+        index as u32
     }
 
-    /// Lays out the subtree at `node`.
-    fn child(&mut self, node: usize) -> Child {
-        match self.nodes[node].kind() {
-            Kind::Leaf { count: 0, .. } => Child::EMPTY,
-            Kind::Leaf { first, count } => self.leaf(&self.references[first..first + count]),
-            Kind::Inner { axis, position, right } => {
-                let index = self.layout.wides.len();
-                self.layout.wides.push(Wide::NO_PLANES);
-                let mut wide = Wide::NO_PLANES;
-                wide.planes[7] = 0.0;
-                wide.set_plane(3, axis, position);
-                for (half, child) in [node + 1, right].into_iter().enumerate() {
-                    self.second_level(&mut wide, half, child);
-                }
-                self.layout.wides[index] = wide;
-                Child(index as u32)
+    /// At most eight descendants that hold everything below `node`.
+    fn descendants(&self, node: usize) -> Vec<usize> {
+        let is_empty = |node: usize| self.bounds[node].is_empty();
+        let children = |node: usize| match self.tree.nodes()[node].kind() {
+            Kind::Inner { right, .. } => Some([node + 1, right]),
+            Kind::Leaf { .. } => None,
+        };
+        let mut open: Vec<usize> = if is_empty(node) { Vec::new() } else { vec![node] };
+        loop {
+            let area = |place: &usize| self.bounds[open[*place]].half_area();
+            let largest = (0..open.len())
+                .filter(|place| children(open[*place]).is_some())
+                .max_by(|a, b| area(a).total_cmp(&area(b)));
+            let Some(largest) = largest else { return open };
+            let below = children(open[largest]).into_iter().flatten();
+            let below: Vec<usize> = below.filter(|child| !is_empty(*child)).collect();
+            if open.len() - 1 + below.len() > 8 {
+                return open;
             }
+            open.splice(largest..=largest, below);
         }
     }
 
-    fn second_level(&mut self, wide: &mut Wide, half: usize, node: usize) {
-        let Kind::Inner { axis, position, right } = self.nodes[node].kind() else {
-            wide.children[4 * half] = self.child(node);
-            return;
-        };
-        wide.set_plane(4 * half, axis, position);
-        for (quarter, child) in [node + 1, right].into_iter().enumerate() {
-            self.third_level(wide, 4 * half, quarter, child);
+    fn child(&mut self, node: usize) -> Child {
+        match self.tree.nodes()[node].kind() {
+            Kind::Inner { .. } => Child(self.wide(node)),
+            Kind::Leaf { first, count } => self.leaf(first, count),
         }
     }
 
-    fn third_level(&mut self, wide: &mut Wide, start: usize, quarter: usize, node: usize) {
-        let place = start + 2 * quarter;
-        let Kind::Inner { axis, position, right } = self.nodes[node].kind() else {
-            wide.children[place] = self.child(node);
-            return;
-        };
-        wide.set_plane(start + 1 + quarter, axis, position);
-        wide.children[place] = self.child(node + 1);
-        wide.children[place + 1] = self.child(right);
-    }
-
-    fn leaf(&mut self, triangles: &[u32]) -> Child {
-        let first = self.layout.blocks.len();
-        let chunks = triangles.chunks(LANES);
+    fn leaf(&mut self, first: usize, count: usize) -> Child {
+        let start = self.layout.blocks.len() as u32;
+        let chunks = self.tree.references()[first..first + count].chunks(LANES);
         let last = chunks.len() - 1;
         for (index, chunk) in chunks.enumerate() {
             let corners = |triangle: u32| self.mesh.triangle(triangle as usize);
             self.layout.blocks.push(Block::new(chunk, index == last, corners));
         }
-        Child(first as u32 | Child::LEAF)
+        Child(start | Child::LEAF)
     }
 }

@@ -58,7 +58,7 @@ impl Tree {
     ///
     /// The same mesh and options give the same tree, byte for byte, on every machine, with any
     /// number of threads and any [`Builder`](crate::Builder). Costs O(N log N) time with the
-    /// default builder, and about 130 bytes a triangle while it runs. \[WH06]
+    /// default builder; [`Tree::build_reported`] says what memory it took. \[WH06]
     ///
     /// # Errors
     ///
