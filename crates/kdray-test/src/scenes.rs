@@ -40,7 +40,7 @@ impl Scene {
     }
 }
 
-/// All scenes: the ordinary ones, then the [degenerate](crate::degenerate) ones.
+/// All scenes: the ordinary ones, then those of [`crate::degenerate`].
 pub fn all() -> impl Iterator<Item = Scene> {
     ordinary().into_iter().chain(degenerate::all())
 }

@@ -67,6 +67,7 @@ impl Block {
     #[cfg(target_arch = "x86_64")]
     #[inline]
     #[target_feature(enable = "avx2")]
+    #[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
     pub(super) fn filter_avx2<V>(&self, shear: &Shear) -> Filtered {
         use std::arch::x86_64::*;
         // SAFETY: rows are eight lanes, aligned like the block.

@@ -35,6 +35,7 @@ pub(super) fn step(wide: &Wide, slabs: &Slabs, [t_min, t_max]: [f32; 2]) -> Met 
 #[cfg(target_arch = "x86_64")]
 #[inline]
 #[target_feature(enable = "avx2")]
+#[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
 pub(super) fn step_avx2<V>(wide: &Wide, slabs: &Slabs, [t_min, t_max]: [f32; 2]) -> Met {
     use std::arch::x86_64::*;
     let mut enter = _mm256_set1_ps(t_min);
