@@ -39,7 +39,9 @@ impl Builder for TreeBuilder {
         let options =
             BuildOptions { cost: self.cost, threads: self.threads, ..BuildOptions::default() };
         let tree = Tree::build(mesh, &options)?;
-        Ok(Box::new(Traced(Tracer::new(mesh, &tree))))
+        // The tracer takes the threads of the pool that it is made in.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build()?;
+        Ok(Box::new(Traced(pool.install(|| Tracer::new(mesh, &tree)))))
     }
 }
 
