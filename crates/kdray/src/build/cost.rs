@@ -23,7 +23,8 @@ pub struct Cost {
 }
 
 impl Default for Cost {
-    /// The prices that traced fastest for their memory; `bench/` has the measurement.
+    /// With steps from 1 to 4 tests, trees got smaller and tracing faster; from 4 to 12 tracing stayed
+    /// the same within the noise.
     fn default() -> Self {
         Self { traversal: 4.0, intersect: 1.0, empty_bonus: 0.2 }
     }
