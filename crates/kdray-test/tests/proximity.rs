@@ -44,8 +44,8 @@ fn closest_points_as_brute_force() {
         let found = found.expect("there are triangles");
         let (distance, wanted) = (f64::from(found.distance), wanted.sqrt());
         // Rounded once to single precision; the two ways to it differ by roundings of doubles,
-        // which needles magnify by their length over their width, a hundred thousand here.
-        let tolerance = wanted * f64::from(f32::EPSILON) + 1e-11 * reach_of(mesh, point);
+        // which count where the distance is small beside the coordinates.
+        let tolerance = wanted * f64::from(f32::EPSILON) + 1e-14 * reach_of(mesh, point);
         assert!((distance - wanted).abs() <= tolerance, "{name} {point:?}: {found:?} {wanted}");
         // The smallest numbers are not made smaller by a hundredth.
         let shorter = found.distance * 0.99;
