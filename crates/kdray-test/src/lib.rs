@@ -1,7 +1,8 @@
 //! Scenes, oracles and helpers for the tests of kdray.
 //!
 //! [`scenes`] and [`degenerate`] make the meshes, [`rays`] the rays that go where ties are, and
-//! [`presets`] the options. [`oracle`] answers queries by trying every triangle, [`exact`] tests one
+//! [`presets`] the options. [`oracle`] answers queries by trying every triangle, [`sieve`] does
+//! so for millions of rays, [`exact`] tests one
 //! triangle in rational numbers, [`definition`] checks a tree plane by plane against what the
 //! tree is defined to be, and [`tree_file`] damages trees on purpose.
 
@@ -14,7 +15,9 @@ pub mod random;
 pub mod rays;
 pub mod scenes;
 pub mod shared;
+pub mod sieve;
 pub mod tree_file;
+pub mod vulkan;
 
 pub use random::Random;
 pub use scenes::Scene;

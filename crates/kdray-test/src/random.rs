@@ -13,6 +13,16 @@ impl Random {
         Self(Pcg32::seed_from_u64(seed))
     }
 
+    /// 32 bits.
+    pub fn word(&mut self) -> u32 {
+        self.0.next_u32()
+    }
+
+    /// So many times 32 bits.
+    pub fn words(&mut self, count: usize) -> Vec<u32> {
+        (0..count).map(|_| self.word()).collect()
+    }
+
     /// At least 0, less than 1.
     pub fn unit(&mut self) -> f64 {
         f64::from(self.0.next_u32()) / 4_294_967_296.0

@@ -5,8 +5,12 @@ pub mod geometry;
 mod memory;
 pub mod trace;
 pub mod tree;
+pub mod winding;
 
 pub use build::{BuildError, BuildOptions, BuildReport, Builder, Cost};
-pub use geometry::{Aabb, Frame, Hit, Mesh, MeshError, Ray};
-pub use trace::{ClosestPoint, Counts, Only, Tracer};
+pub use geometry::{Aabb, Frame, Hit, Mesh, MeshError, MeshFileError, Ray};
+pub use trace::{
+    Batch, BatchError, BatchOptions, ClosestPoint, Counts, Leaf, Lists, Only, Sign, Tracer,
+};
 pub use tree::{FileError, Node, Stats, Tree, Violation};
+pub use winding::Winding;

@@ -36,7 +36,7 @@ impl Default for Cost {
 /// rounded to single precision, so they agree on which plane is cheapest to the last bit. A price
 /// never decreases when a count grows; the sweep relies on that.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct NodeCost {
+pub struct NodeCost {
     /// By axis: intersection price times the area of the face that a plane shows.
     pub(crate) face: [f32; 3],
     /// By axis: intersection price times half the girth of that face.
@@ -46,11 +46,13 @@ pub(crate) struct NodeCost {
     /// Intersection price times the half area.
     test: f32,
     /// What a plane with an empty side pays, as a fraction.
-    pub(crate) empty_factor: f32,
+    pub empty_factor: f32,
 }
 
 impl NodeCost {
-    pub(crate) fn new(cost: &Cost, bounds: &Aabb) -> Self {
+    /// The prices of the node with these `bounds`.
+    #[must_use]
+    pub fn new(cost: &Cost, bounds: &Aabb) -> Self {
         let [x, y, z] = bounds.extent();
         let half_area = x * (y + z) + y * z;
         Self {
@@ -63,19 +65,16 @@ impl NodeCost {
     }
 
     /// Price of keeping `count` references in a leaf.
-    pub(crate) fn leaf(&self, count: usize) -> f32 {
+    #[must_use]
+    pub fn leaf(&self, count: usize) -> f32 {
         self.test * count as f32
     }
 
     /// Price of a plane at distances `below` and `above` from the two faces of the node, with
     /// `left` and `right` references on its sides.
+    #[must_use]
     #[inline(always)]
-    pub(crate) fn split(
-        &self,
-        axis: usize,
-        [below, above]: [f32; 2],
-        [left, right]: [i32; 2],
-    ) -> f32 {
+    pub fn split(&self, axis: usize, [below, above]: [f32; 2], [left, right]: [i32; 2]) -> f32 {
         let volumes = left as f32 * below + right as f32 * above;
         let tests = self.face[axis] * (left + right) as f32 + self.girth[axis] * volumes;
         let price = self.step + tests;
@@ -85,7 +84,8 @@ impl NodeCost {
 
     /// Whether no plane can be cheaper than a leaf, whatever the counts: the traversal step alone
     /// costs as much.
-    pub(crate) fn is_surely_leaf(&self, count: usize) -> bool {
+    #[must_use]
+    pub fn is_surely_leaf(&self, count: usize) -> bool {
         self.leaf(count) <= self.empty_factor * self.step
     }
 }

@@ -16,14 +16,16 @@ mod plane;
 mod resort;
 
 pub use cost::Cost;
-pub(crate) use cost::NodeCost;
 pub use error::BuildError;
 pub use options::{BuildOptions, BuildReport, Builder, MAX_DEPTH};
+
+// What a builder on another device shares with these, to the last bit; not a stable interface.
+#[doc(hidden)]
+pub use {cost::NodeCost, exact::ordered, exact::position_of, options::Limits};
 
 use crate::geometry::Mesh;
 use crate::tree::Tree;
 use meter::Meter;
-use options::Limits;
 
 /// Nodes and references of a finished tree or subtree, as [`Tree`] stores them.
 pub(crate) use grow::Growth;
@@ -33,9 +35,8 @@ pub(crate) fn build(
     mesh: &Mesh,
     options: &BuildOptions,
 ) -> Result<(Tree, BuildReport), BuildError> {
-    options.check()?;
+    let limits = Limits::new(mesh, options)?;
     let meter = Meter::new(options);
-    let limits = Limits::new(mesh, options);
     let growth = match options.builder {
         Builder::Naive => naive::build(mesh, &limits, &meter),
         Builder::Resort => resort::build(mesh, &limits, &meter),

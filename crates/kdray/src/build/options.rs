@@ -70,7 +70,7 @@ impl Default for BuildOptions<'_> {
 
 impl BuildOptions<'_> {
     /// Refuses options that have no meaning.
-    pub(super) fn check(&self) -> Result<(), BuildError> {
+    fn check(&self) -> Result<(), BuildError> {
         let refuse =
             |option, value: String, expected| Err(BuildError::Option { option, value, expected });
         // Beyond these, products with counts and areas would leave the range of f32.
@@ -102,29 +102,40 @@ pub struct BuildReport {
 
 /// The options as the builders use them: every default resolved.
 #[derive(Clone, Copy)]
-pub(super) struct Limits {
-    pub(super) cost: Cost,
-    pub(super) max_depth: u32,
-    pub(super) max_leaf: usize,
+pub struct Limits {
+    /// What a ray is thought to pay.
+    pub cost: Cost,
+    /// Depth at which every node is a leaf.
+    pub max_depth: u32,
+    /// Nodes of at most this many references are leaves.
+    pub max_leaf: usize,
     pub(super) threads: usize,
-    clip: bool,
+    /// Whether straddlers are clipped.
+    pub clip: bool,
 }
 
 impl Limits {
-    pub(super) fn new(mesh: &Mesh, options: &BuildOptions) -> Self {
+    /// The options for `mesh`.
+    ///
+    /// # Errors
+    ///
+    /// [`BuildError::Option`] names the option that has no meaning.
+    pub fn new(mesh: &Mesh, options: &BuildOptions) -> Result<Self, BuildError> {
+        options.check()?;
         let default_depth = default_depth(mesh.triangles().len());
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        Self {
+        Ok(Self {
             cost: options.cost,
             max_depth: options.max_depth.unwrap_or(default_depth),
             max_leaf: options.max_leaf as usize,
             threads: if options.threads == 0 { cores() } else { options.threads },
             clip: options.clip,
-        }
+        })
     }
 
     /// Bounds of a straddler's part in a child, or `None` if it has none.
-    pub(super) fn part(&self, triangle: &[[f32; 3]; 3], bounds: &Aabb) -> Option<Aabb> {
+    #[must_use]
+    pub fn part(&self, triangle: &[[f32; 3]; 3], bounds: &Aabb) -> Option<Aabb> {
         use crate::geometry::clip::{clip, overlap};
         if self.clip { clip(triangle, bounds) } else { overlap(triangle, bounds) }
     }

@@ -22,7 +22,7 @@ const HALF_ULP: f32 = f32::EPSILON * 0.5;
 
 /// Bounds of the part of `triangle` inside `bounds`, or `None` if there is no such part.
 #[must_use]
-pub(crate) fn clip(triangle: &[[f32; 3]; 3], bounds: &Aabb) -> Option<Aabb> {
+pub fn clip(triangle: &[[f32; 3]; 3], bounds: &Aabb) -> Option<Aabb> {
     let whole = Aabb::of_points(triangle);
     let margin = margin(&whole, bounds);
     let mut polygon = Polygon::new(triangle);
@@ -51,7 +51,7 @@ pub(crate) fn clip(triangle: &[[f32; 3]; 3], bounds: &Aabb) -> Option<Aabb> {
 
 /// The part of the triangle's own bounds inside `bounds`: what a builder that does not clip uses.
 #[must_use]
-pub(crate) fn overlap(triangle: &[[f32; 3]; 3], bounds: &Aabb) -> Option<Aabb> {
+pub fn overlap(triangle: &[[f32; 3]; 3], bounds: &Aabb) -> Option<Aabb> {
     let mut part = Aabb::of_points(triangle);
     for axis in 0..3 {
         part.lower[axis] = part.lower[axis].max(bounds.lower[axis]) + 0.0;
@@ -95,7 +95,7 @@ impl Polygon {
 
     /// Keeps the side of the plane where `inside(coordinate, plane)` holds.
     fn cut(&mut self, axis: usize, plane: f32, inside: impl Fn(f32, f32) -> bool) {
-        let mut kept = Self::empty();
+        let mut kept = Self { overflowed: self.overflowed, ..Self::empty() };
         for index in 0..self.len {
             let corner = self.corners[index];
             let next = self.corners[if index + 1 == self.len { 0 } else { index + 1 }];

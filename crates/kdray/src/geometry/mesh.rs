@@ -1,5 +1,6 @@
 //! The triangles of a scene, checked once.
 
+use super::vector::{cross, dot, minus};
 use super::{Aabb, Frame};
 
 /// Triangles that are known to be sound: every index is in range and every coordinate is finite.
@@ -121,10 +122,30 @@ impl Mesh {
         // A vertex outside every triangle may lie out of reach of the frame; nothing uses it.
         let local = |index| frame.local_point(world(index)).map(|x| x.clamp(f32::MIN, f32::MAX));
         let positions: Vec<[f32; 3]> = (0..vertices).map(local).collect();
+        Ok(Self::bounded(positions, triangles, frame))
+    }
+
+    /// A mesh of `positions` that are already those of `frame`, without -0.
+    pub(super) fn from_local(
+        positions: Vec<[f32; 3]>,
+        triangles: Vec<[u32; 3]>,
+        frame: Frame,
+    ) -> Result<Self, MeshError> {
+        check_indices(positions.len(), &triangles)?;
+        let is_finite = |position: &[f32; 3]| position.iter().all(|value| value.is_finite());
+        if let Some(vertex) = positions.iter().position(|position| !is_finite(position)) {
+            let position = positions[vertex].map(f64::from);
+            return Err(MeshError::NonFinite { vertex, position });
+        }
+        Ok(Self::bounded(positions, triangles, frame))
+    }
+
+    /// The mesh of what has been checked.
+    fn bounded(positions: Vec<[f32; 3]>, triangles: Vec<[u32; 3]>, frame: Frame) -> Self {
         let corners = triangles.as_flattened().iter().map(|index| positions[*index as usize]);
         let bounds = corners.fold(Aabb::EMPTY, Aabb::union_point);
         let bounds = if triangles.is_empty() { EMPTY_SCENE } else { bounds };
-        Ok(Self { positions, triangles, frame, bounds })
+        Self { positions, triangles, frame, bounds }
     }
 
     /// The vertices, in the mesh's frame.
@@ -148,6 +169,31 @@ impl Mesh {
     #[inline]
     pub fn triangle(&self, index: usize) -> [[f32; 3]; 3] {
         self.triangles[index].map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// The unit normal of a triangle, toward where its corners are seen counter-clockwise; `None`
+    /// if it has no area. Worked out in double precision and rounded once.
+    ///
+    /// ```
+    /// use kdray::Mesh;
+    ///
+    /// let corners = [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
+    /// let mesh = Mesh::new(&corners, &[[0, 1, 2], [0, 2, 1], [0, 1, 1]])?;
+    /// assert_eq!(mesh.normal(0), Some([0.0, 0.0, 1.0]));
+    /// assert_eq!(mesh.normal(1), Some([0.0, 0.0, -1.0]));
+    /// assert_eq!(mesh.normal(2), None);
+    /// # Ok::<(), kdray::MeshError>(())
+    /// ```
+    ///
+    /// # Panics
+    ///
+    /// If there is no such triangle.
+    #[must_use]
+    pub fn normal(&self, index: usize) -> Option<[f32; 3]> {
+        let [a, b, c] = self.triangle(index).map(|corner| corner.map(f64::from));
+        let normal = cross(minus(b, a), minus(c, a));
+        let length = dot(normal, normal).sqrt();
+        (length > 0.0).then(|| normal.map(|component| (component / length) as f32))
     }
 
     /// Bounds of all triangles, in the mesh's frame; the point zero if there are none.

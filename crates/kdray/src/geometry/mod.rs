@@ -4,11 +4,18 @@ mod aabb;
 pub(crate) mod clip;
 mod frame;
 mod mesh;
+mod mesh_file;
 pub(crate) mod nearest;
 pub(crate) mod overlap;
 mod ray;
+pub(crate) mod vector;
 
 pub use aabb::Aabb;
 pub use frame::Frame;
 pub use mesh::{Mesh, MeshError};
+pub use mesh_file::MeshFileError;
 pub use ray::{Hit, Ray};
+
+// For builders on other devices; not a stable interface.
+#[doc(hidden)]
+pub use {clip::clip, clip::overlap};

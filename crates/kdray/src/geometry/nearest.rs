@@ -1,5 +1,7 @@
 //! The point of a triangle nearest to another point.
 
+use super::vector::{Vector, cross, dot, minus};
+
 /// A point of a triangle: `(1 - u - v) v0 + u v1 + v v2`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Nearest {
@@ -9,8 +11,6 @@ pub(crate) struct Nearest {
     pub(crate) v: f64,
 }
 
-type Vector = [f64; 3];
-
 /// The nearest point of the triangle, in double precision: the foot on its plane, or the nearest of
 /// the nearest points of its edges \[Eri05].
 ///
@@ -18,9 +18,9 @@ type Vector = [f64; 3];
 pub(crate) fn nearest_on_triangle(point: [f32; 3], corners: &[[f32; 3]; 3]) -> Nearest {
     let p = point.map(f64::from);
     let [a, b, c] = corners.map(|corner| corner.map(f64::from));
-    let normal = cross(sub(b, a), sub(c, a));
+    let normal = cross(minus(b, a), minus(c, a));
     let length = dot(normal, normal);
-    let inward = |from: Vector, to: Vector| dot(cross(normal, sub(to, from)), sub(p, from));
+    let inward = |from: Vector, to: Vector| dot(cross(normal, minus(to, from)), minus(p, from));
     let edges = [on_edge(p, a, b), on_edge(p, a, c), on_edge(p, b, c)];
     let candidates = [
         at(p, [a, b, c], edges[0], 0.0),
@@ -34,7 +34,7 @@ pub(crate) fn nearest_on_triangle(point: [f32; 3], corners: &[[f32; 3]; 3]) -> N
     let sides = [inward(b, c), inward(c, a), inward(a, b)];
     if length > 0.0 && sides.iter().all(|side| *side > 0.0) {
         // The foot on the plane is precise where weighted corners of a sliver would not be.
-        let height = dot(normal, sub(p, a)) / length;
+        let height = dot(normal, minus(p, a)) / length;
         let point = [0, 1, 2].map(|axis| p[axis] - height * normal[axis]);
         let [_, u, v] = sides.map(|side| side / length);
         let foot = Nearest { point, squared_distance: height * height * length, u, v };
@@ -45,28 +45,16 @@ pub(crate) fn nearest_on_triangle(point: [f32; 3], corners: &[[f32; 3]; 3]) -> N
 
 /// How far along the edge from `a` to `b` its nearest point is.
 fn on_edge(p: Vector, a: Vector, b: Vector) -> f64 {
-    let along = sub(b, a);
+    let along = minus(b, a);
     let length = dot(along, along);
-    if length == 0.0 { 0.0 } else { (dot(along, sub(p, a)) / length).clamp(0.0, 1.0) }
+    if length == 0.0 { 0.0 } else { (dot(along, minus(p, a)) / length).clamp(0.0, 1.0) }
 }
 
 fn at(p: Vector, [a, b, c]: [Vector; 3], u: f64, v: f64) -> Nearest {
-    let (ab, ac) = (sub(b, a), sub(c, a));
+    let (ab, ac) = (minus(b, a), minus(c, a));
     let point = [0, 1, 2].map(|axis| a[axis] + (u * ab[axis] + v * ac[axis]));
-    let away = sub(p, point);
+    let away = minus(p, point);
     Nearest { point, squared_distance: dot(away, away), u, v }
-}
-
-fn sub(a: Vector, b: Vector) -> Vector {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

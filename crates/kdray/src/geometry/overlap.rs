@@ -1,6 +1,7 @@
 //! Whether a triangle and a box have a point in common.
 
 use super::Aabb;
+use super::vector::{cross, dot};
 
 /// Whether the triangle and the box meet, touching included: no axis separates them \[AM01].
 ///
@@ -32,14 +33,6 @@ fn separates(axis: [f64; 3], corners: &[[f64; 3]; 3], half: [f64; 3]) -> bool {
     let highest = along[0].max(along[1]).max(along[2]);
     let reach = dot(axis.map(f64::abs), half);
     lowest > reach || highest < -reach
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

@@ -35,12 +35,13 @@ impl Ray {
     /// Whether the ray can hit anything at all.
     #[inline]
     pub(crate) fn is_valid(&self) -> bool {
-        let finite = |v: &[f32; 3]| v[0].is_finite() & v[1].is_finite() & v[2].is_finite();
-        let [x, y, z] = self.direction;
-        let length = x.abs().max(y.abs()).max(z.abs());
-        finite(&self.origin)
-            & finite(&self.direction)
-            & (1e-21..=1e21).contains(&length)
+        let within = |v: &[f32; 3], most: f32| {
+            (v[0].abs() <= most) & (v[1].abs() <= most) & (v[2].abs() <= most)
+        };
+        let [x, y, z] = self.direction.map(f32::abs);
+        within(&self.origin, f32::MAX)
+            & within(&self.direction, 1e21)
+            & ((x >= 1e-21) | (y >= 1e-21) | (z >= 1e-21))
             & (self.t_min <= self.t_max)
     }
 }

@@ -2,7 +2,13 @@
 
 use super::intersect::{Crossing, crossing, locate};
 use super::prepare::Shear;
+#[cfg(target_arch = "x86_64")]
+use super::sift::{Sifted, sheared, sift};
+#[cfg(target_arch = "x86_64")]
+use super::vector::{Arithmetic, Eight};
 use crate::geometry::Hit;
+#[cfg(target_arch = "x86_64")]
+use crate::geometry::Ray;
 
 /// Triangles in a block.
 pub(super) const LANES: usize = 8;
@@ -18,11 +24,92 @@ pub(super) struct Block {
     triangles: [u32; LANES],
 }
 
-/// The lanes of a block that the line of a ray may cross, and those that it crosses for certain.
+/// The lanes of a block that a ray may hit in the interval that was asked for.
 #[derive(Clone, Copy)]
 pub(super) struct Filtered {
-    pub(super) maybe: u32,
+    maybe: u32,
+    /// Those of them that its line crosses for certain.
     surely: u32,
+    /// Those that are hit in the interval for certain.
+    inside: u32,
+    /// No hit of a lane comes before.
+    earliest: Lanes,
+}
+
+impl Filtered {
+    /// Whether the line crosses the triangle for certain.
+    #[inline(always)]
+    pub(super) fn surely(&self, lane: usize) -> bool {
+        self.surely >> lane & 1 == 1
+    }
+
+    /// The lanes that are hit in the interval for certain.
+    #[inline(always)]
+    pub(super) fn inside(&self) -> impl Iterator<Item = usize> + use<> {
+        let inside = self.inside;
+        (0..LANES).filter(move |lane| inside >> lane & 1 == 1)
+    }
+
+    /// Takes out the lane that may be hit first, if that is not after `until`.
+    #[inline(always)]
+    pub(super) fn next(&mut self, until: f32) -> Option<usize> {
+        while self.maybe != 0 {
+            let mut first = self.maybe.trailing_zeros() as usize & (LANES - 1);
+            let mut rest = self.maybe & (self.maybe - 1);
+            while rest != 0 {
+                let other = rest.trailing_zeros() as usize & (LANES - 1);
+                rest &= rest - 1;
+                first = if self.earliest[other] < self.earliest[first] { other } else { first };
+            }
+            self.maybe &= !(1 << first);
+            if self.earliest[first] <= until {
+                return Some(first);
+            }
+        }
+        None
+    }
+}
+
+/// A ray in every lane.
+#[cfg(target_arch = "x86_64")]
+pub(super) struct RayLanes {
+    shear: Shear,
+    origin: [Eight; 3],
+    slope: [Eight; 2],
+    t_per_z: f32,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl RayLanes {
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(super) fn new(ray: &Ray) -> Self {
+        use std::arch::x86_64::*;
+        let axes = Shear::axes(&ray.direction);
+        let order = _mm_setr_epi32(axes[0] as i32, axes[1] as i32, axes[2] as i32, 3);
+        let in_order = |start: *const f32| {
+            let mut components = [0.0; 4];
+            // SAFETY: `start` is followed by four numbers, as many as there is room for.
+            unsafe {
+                let permuted = _mm_permutevar_ps(_mm_loadu_ps(start), order);
+                _mm_storeu_ps(components.as_mut_ptr(), permuted);
+            }
+            [components[0], components[1], components[2]]
+        };
+        let start = std::ptr::from_ref(ray).cast::<f32>();
+        let shear = Shear::in_order(axes, in_order(start), in_order(start.wrapping_add(4)));
+        let all = |value: f32| Eight(_mm256_set1_ps(value));
+        let (origin, slope) = (shear.origin.map(all), shear.shear.map(all));
+        Self { origin, slope, t_per_z: shear.t_per_z as f32, shear }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl AsRef<Shear> for RayLanes {
+    #[inline(always)]
+    fn as_ref(&self) -> &Shear {
+        &self.shear
+    }
 }
 
 /// Marks the last block of a leaf, in its last index.
@@ -59,60 +146,50 @@ impl Block {
     /// What is known of the lanes without a test: nothing.
     #[inline(always)]
     pub(super) fn unknown(&self) -> Filtered {
-        Filtered { maybe: (1 << LANES) - 1, surely: 0 }
+        let earliest = [f32::NEG_INFINITY; LANES];
+        Filtered { maybe: (1 << LANES) - 1, surely: 0, inside: 0, earliest }
     }
 
-    /// The lanes whose edge functions do not differ in sign: surely crossed if none is zero. The
-    /// arithmetic is that of [`crossing`]. `V` is the visitor of the traversal, whose own it is.
+    /// The lanes whose edge functions do not differ in sign, with the arithmetic of [`crossing`],
+    /// but for those that are hit before or after the interval for certain. `V` is the visitor of
+    /// the traversal, whose own it is.
     #[cfg(target_arch = "x86_64")]
     #[inline]
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     #[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
-    pub(super) fn filter_avx2<V>(&self, shear: &Shear) -> Filtered {
-        use std::arch::x86_64::*;
-        // SAFETY: rows are eight lanes, aligned like the block.
-        let row = |corner: usize, axis: usize| unsafe {
-            _mm256_load_ps(self.corners[corner][shear.axes[axis]].as_ptr())
-        };
-        let [shear_x, shear_y] = [_mm256_set1_ps(shear.shear[0]), _mm256_set1_ps(shear.shear[1])];
-        let x0 = _mm256_set1_ps(shear.origin[0]);
-        let y0 = _mm256_set1_ps(shear.origin[1]);
-        let z0 = _mm256_set1_ps(shear.origin[2]);
-        let point = |corner: usize| {
-            let z = _mm256_sub_ps(row(corner, 2), z0);
-            let x = _mm256_sub_ps(row(corner, 0), x0);
-            let y = _mm256_sub_ps(row(corner, 1), y0);
-            let x = _mm256_sub_ps(x, _mm256_mul_ps(shear_x, z));
-            let y = _mm256_sub_ps(y, _mm256_mul_ps(shear_y, z));
-            (x, y)
-        };
-        let edge = |p: (__m256, __m256), q: (__m256, __m256)| {
-            _mm256_sub_ps(_mm256_mul_ps(p.0, q.1), _mm256_mul_ps(p.1, q.0))
-        };
-        let (a, b, c) = (point(0), point(1), point(2));
-        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-        let zero = _mm256_setzero_ps();
-        let lowest = _mm256_min_ps(_mm256_min_ps(u, v), w);
-        let highest = _mm256_max_ps(_mm256_max_ps(u, v), w);
-        let positive = _mm256_cmp_ps::<_CMP_GE_OQ>(lowest, zero);
-        let negative = _mm256_cmp_ps::<_CMP_LE_OQ>(highest, zero);
-        let maybe = _mm256_movemask_ps(_mm256_or_ps(positive, negative)) as u32;
-        if maybe == 0 {
-            return Filtered { maybe, surely: 0 };
+    pub(super) fn filter_avx2<V>(&self, ray: &RayLanes, [t_min, t_max]: [f32; 2]) -> Filtered {
+        use std::arch::x86_64::{_mm256_load_ps, _mm256_storeu_ps};
+        let mut corners = [ray.origin; 3];
+        for corner in 0..3 {
+            for (place, axis) in ray.shear.axes.into_iter().enumerate() {
+                // SAFETY: axes are less than three; rows are eight lanes, aligned like the block.
+                corners[corner][place] = Eight(unsafe {
+                    _mm256_load_ps(self.corners[corner].get_unchecked(axis).as_ptr())
+                });
+            }
+            corners[corner] = sheared(corners[corner], &ray.origin, &ray.slope);
         }
-        let positive = _mm256_cmp_ps::<_CMP_GT_OQ>(lowest, zero);
-        let negative = _mm256_cmp_ps::<_CMP_LT_OQ>(highest, zero);
-        let surely = _mm256_movemask_ps(_mm256_or_ps(positive, negative)) as u32;
-        Filtered { maybe, surely }
+        let all = |number: f32| ray.origin[0].all(number);
+        let sifted = sift(&corners, all(ray.t_per_z), [all(t_min), all(t_max)]);
+        let mut earliest = [0.0; LANES];
+        // SAFETY: eight lanes fit.
+        unsafe { _mm256_storeu_ps(earliest.as_mut_ptr(), sifted.early.0) };
+        let Sifted { maybe, surely, inside, .. } = sifted;
+        Filtered { maybe, surely, inside, earliest }
     }
 
-    /// The hit of the triangle in a lane of `filtered`, at any `t`.
+    /// The index of the triangle in a lane.
     #[inline(always)]
-    pub(super) fn hit(&self, lane: usize, filtered: Filtered, shear: &Shear) -> Option<Hit> {
+    pub(super) fn index(&self, lane: usize) -> u32 {
+        self.triangles[lane & (LANES - 1)] & !LAST
+    }
+
+    /// The hit of the triangle in a lane, at any `t`. `surely` says that the line crosses it.
+    #[inline(always)]
+    pub(super) fn hit(&self, lane: usize, surely: bool, shear: &Shear) -> Option<Hit> {
         let (triangle, corners) = self.triangle(lane);
-        let surely = filtered.surely >> lane & 1 == 1;
         let Crossing { t, u, v } =
-            if surely { locate(shear, &corners) } else { crossing(shear, &corners)? };
+            if surely { locate(*shear, &corners) } else { crossing(*shear, &corners)? };
         Some(Hit { t, triangle, u, v })
     }
 
@@ -123,28 +200,29 @@ impl Block {
             let [x, y, z] = &self.corners[corner];
             [x[lane], y[lane], z[lane]]
         };
-        (self.triangles[lane] & !LAST, [corner(0), corner(1), corner(2)])
+        (self.index(lane), [corner(0), corner(1), corner(2)])
     }
 
-    /// A bit for every lane whose triangle's bounds are within the squared distance `until` of
-    /// `point`, or seem to be.
+    /// The corners of the triangles, by corner and axis.
     #[inline(always)]
-    pub(super) fn near(&self, point: [f32; 3], until: f32) -> u32 {
-        let mut squared = [0.0; LANES];
-        for axis in 0..3 {
-            for lane in 0..LANES {
-                let [a, b, c] = [0, 1, 2].map(|corner: usize| self.corners[corner][axis][lane]);
-                let below = a.min(b).min(c) - point[axis];
-                let above = point[axis] - a.max(b).max(c);
-                let outside = below.max(above).max(0.0);
-                squared[lane] += outside * outside;
-            }
-        }
-        let until = until * (1.0 + 8.0 * f32::EPSILON);
-        let mut near = 0;
-        for lane in 0..LANES {
-            near |= u32::from(squared[lane] <= until) << lane;
-        }
-        near
+    pub(super) fn corners(&self) -> &[[Lanes; 3]; 3] {
+        &self.corners
+    }
+
+    /// The triangles, each once.
+    pub(super) fn triangles(&self) -> impl Iterator<Item = u32> + '_ {
+        self.places().map(|lane| self.index(lane))
+    }
+
+    /// The lanes that do not only repeat the first.
+    #[inline(always)]
+    pub(super) fn places(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..LANES).take_while(|lane| *lane == 0 || !self.is_free(*lane))
+    }
+
+    /// Whether a lane, not the first, only repeats the first.
+    #[inline(always)]
+    pub(super) fn is_free(&self, lane: usize) -> bool {
+        self.triangles[lane] & !LAST == self.triangles[0]
     }
 }

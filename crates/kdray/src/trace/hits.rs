@@ -29,12 +29,23 @@ impl<F: Fn(u32) -> bool> Visitor for Closest<F> {
         }
         self.t_max
     }
+
+    #[inline(always)]
+    fn knows(&self, triangle: u32) -> bool {
+        self.hit.is_some_and(|hit| hit.triangle == triangle)
+    }
 }
 
 /// Counts while it looks for the first hit.
 pub(super) struct Counted<F> {
     pub(super) closest: Closest<F>,
     pub(super) counts: Counts,
+}
+
+impl<F> Counted<F> {
+    pub(super) fn new(ray: &Ray, accept: F) -> Self {
+        Self { closest: Closest::new(ray, accept), counts: Counts::default() }
+    }
 }
 
 impl<F: Fn(u32) -> bool> Visitor for Counted<F> {
@@ -57,10 +68,16 @@ impl<F: Fn(u32) -> bool> Visitor for Counted<F> {
 
 /// Is content with any hit.
 pub(super) struct Any<F> {
-    pub(super) t_min: f32,
-    pub(super) t_max: f32,
-    pub(super) accept: F,
+    t_min: f32,
+    t_max: f32,
+    accept: F,
     pub(super) found: bool,
+}
+
+impl<F> Any<F> {
+    pub(super) fn new(ray: &Ray, accept: F) -> Self {
+        Self { t_min: ray.t_min, t_max: ray.t_max, accept, found: false }
+    }
 }
 
 impl<F: Fn(u32) -> bool> Visitor for Any<F> {
@@ -68,6 +85,14 @@ impl<F: Fn(u32) -> bool> Visitor for Any<F> {
     fn hit(&mut self, hit: Hit) -> f32 {
         let inside = self.t_min <= hit.t && hit.t <= self.t_max;
         self.found = inside && (self.accept)(hit.triangle);
+        if self.found { ENOUGH } else { self.t_max }
+    }
+
+    const ASKS_WHETHER: bool = true;
+
+    #[inline(always)]
+    fn inside(&mut self, triangle: u32) -> f32 {
+        self.found = (self.accept)(triangle);
         if self.found { ENOUGH } else { self.t_max }
     }
 }

@@ -25,7 +25,7 @@ pub fn intersect(ray: &Ray, triangle: u32, corners: &[[f32; 3]; 3]) -> Option<Hi
     if !ray.is_valid() {
         return None;
     }
-    let Crossing { t, u, v } = crossing(&Shear::new(ray), corners)?;
+    let Crossing { t, u, v } = crossing(Shear::new(ray), corners)?;
     (ray.t_min <= t && t <= ray.t_max).then_some(Hit { t, triangle, u, v })
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Crossing {
 
 /// Where the line of the ray crosses the triangle, at any `t`.
 #[inline]
-pub(super) fn crossing(shear: &Shear, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
+pub(super) fn crossing(shear: Shear, corners: &[[f32; 3]; 3]) -> Option<Crossing> {
     let [a, b, c] = [shear.point(&corners[0]), shear.point(&corners[1]), shear.point(&corners[2])];
     let [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];
     let crossed = if (u == 0.0) | (v == 0.0) | (w == 0.0) {
@@ -83,7 +83,7 @@ fn precise_edge(p: [f64; 2], q: [f64; 2]) -> f64 {
 
 /// Where a triangle that is crossed is crossed.
 #[inline]
-pub(super) fn locate(shear: &Shear, corners: &[[f32; 3]; 3]) -> Crossing {
+pub(super) fn locate(shear: Shear, corners: &[[f32; 3]; 3]) -> Crossing {
     let (a, az) = shear.precise_point(&corners[0]);
     let (b, bz) = shear.precise_point(&corners[1]);
     let (c, cz) = shear.precise_point(&corners[2]);

@@ -1,26 +1,78 @@
 //! Trace rays through a tree.
 //!
-//! `wide` lays the tree out in nodes of eight boxes, `prepare` makes of a ray what traversal needs,
-//! `traverse` visits the leaves along it from front to back by `step`s down, `block` filters the
-//! triangles of a leaf eight at a time, and `intersect` says for one triangle what a hit is: it is
-//! the definition that everything else is tested against. `hits` keeps what the queries want of the
-//! hits. `near` visits the leaves around a point, for the queries of `proximity`.
+//! # Watertight, and exactly once
+//!
+//! What a ray hits is a matter of the mesh alone, not of the tree, the order of the triangles, the
+//! query or the processor:
+//!
+//! * Triangles that share an edge share one answer to the question on which side of it the ray
+//!   passes. So a ray through the inside of a surface, through its edges and its vertices, hits one
+//!   of the triangles there, and only one.
+//! * Hence a whole line, `t` from minus to plus infinity, crosses a closed mesh an even number of
+//!   times, whatever edges, vertices and flat faces lie in its way: along the axes, in the planes
+//!   of the tree, through slivers. A mesh is closed if every edge, by the positions of its ends, has
+//!   an even number of triangles. It may intersect itself and be wound in any way.
+//! * [`Tracer::all_hits`] has every crossing once, in order of `t` and then of the triangle, and
+//!   each is exactly the hit that [`intersect`](intersect()) gives for its triangle.
+//!
+//! This is where it ends:
+//!
+//! * A triangle that is seen edge-on, and one without area, is never hit. Its neighbours are, as if
+//!   it were not there.
+//! * Triangles that lie on each other are each hit: two coincident faces are two crossings.
+//! * At vertices and edges where a surface only touches the line, as at the tip of a cone seen from
+//!   the side, there are two crossings or none; either is even.
+//! * Positions count as they are in the mesh, in f32. Ends of edges that differ in the last bit are
+//!   different ends, and there is a gap between them.
+//! * `t` is rounded to f32. Crossings nearer to each other than that may come in the order of their
+//!   triangles; and a ray that starts on the surface may count the crossing at its origin or not:
+//!   leave its triangle out, by [`Tracer::only`] or [`BatchOptions::except`], to be sure.
+//!
+//! # Parts
+//!
+//! `collapse` lays the tree out in the nodes of eight boxes of `wide`; `prepare` makes of a ray what
+//! traversal needs; `traverse` visits the leaves along it from front to back, `walk`ing `step` by
+//! `step`, and `stream` does so for several rays at a time, some of them as a `packet`. `block` filters the triangles of a leaf
+//! eight at a time, and `simd` says with which instructions; `vector` is arithmetic on eight or sixteen
+//! numbers, and `sift` says by it which triangles may be hit. `intersect` says for one triangle what a
+//! hit is: it is the definition that everything else is tested against. `hits` keeps what the queries
+//! want of the hits. `leaves` is the same visit for whoever asks, in strict order.
+//! `near` visits the leaves around a point, for the queries of `proximity`; `apart` says how far
+//! the triangles of a block are at least. `sign` tells inside from outside, and `batch` asks many
+//! things at once.
 
+mod apart;
 mod batch;
 mod block;
+mod collapse;
 mod hits;
 mod intersect;
+mod leaves;
 mod near;
 mod only;
+#[cfg(target_arch = "x86_64")]
+mod packet;
+mod pending;
 mod prepare;
 mod proximity;
+#[cfg(target_arch = "x86_64")]
+mod sift;
+mod sign;
+mod simd;
 mod stack;
 mod step;
+mod stream;
 mod tracer;
 mod traverse;
+#[cfg(target_arch = "x86_64")]
+mod vector;
+mod walk;
 mod wide;
 
+pub use batch::{Batch, BatchError, BatchOptions, Lists};
 pub use intersect::intersect;
+pub use leaves::Leaf;
 pub use only::Only;
 pub use proximity::ClosestPoint;
+pub use sign::Sign;
 pub use tracer::{Counts, Tracer};

@@ -33,8 +33,7 @@ impl<'a, F: Fn(u32) -> bool> Only<'a, F> {
     /// As [`Tracer::closest_hit_counted`].
     #[must_use]
     pub fn closest_hit_counted(&self, ray: &Ray) -> (Option<Hit>, Counts) {
-        let mut counted =
-            Counted { closest: Closest::new(ray, &self.accept), counts: Counts::default() };
+        let mut counted = Counted::new(ray, &self.accept);
         self.tracer.visit(ray, &mut counted);
         (counted.closest.hit, counted.counts)
     }
@@ -42,8 +41,7 @@ impl<'a, F: Fn(u32) -> bool> Only<'a, F> {
     /// As [`Tracer::any_hit`].
     #[must_use]
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        let mut any =
-            Any { t_min: ray.t_min, t_max: ray.t_max, accept: &self.accept, found: false };
+        let mut any = Any::new(ray, &self.accept);
         self.tracer.visit(ray, &mut any);
         any.found
     }

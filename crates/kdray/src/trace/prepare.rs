@@ -15,10 +15,25 @@ pub(super) struct Shear {
     pub(super) t_per_z: f64,
 }
 
+/// By sense and largest axis of the direction: the axes of ray space.
+const AXES: [[[usize; 3]; 3]; 2] =
+    [[[1, 2, 0], [2, 0, 1], [0, 1, 2]], [[2, 1, 0], [0, 2, 1], [1, 0, 2]]];
+
 impl Shear {
     #[inline(always)]
     pub(super) fn new(ray: &Ray) -> Self {
-        let [x, y, z] = ray.direction.map(f32::abs);
+        let axes = Self::axes(&ray.direction);
+        Self::in_order(
+            axes,
+            axes.map(|axis| ray.origin[axis]),
+            axes.map(|axis| ray.direction[axis]),
+        )
+    }
+
+    /// The axes of ray space for a direction.
+    #[inline(always)]
+    pub(super) fn axes(direction: &[f32; 3]) -> [usize; 3] {
+        let [x, y, z] = direction.map(f32::abs);
         let largest = if x > y {
             if x > z { 0 } else { 2 }
         } else if y > z {
@@ -26,18 +41,24 @@ impl Shear {
         } else {
             2
         };
-        let direction = ray.direction;
         // Two axes change places where the ray looks down, so that windings keep their sense.
-        let next = [1, 2, 0][largest];
-        let last = [2, 0, 1][largest];
-        let axes =
-            if direction[largest] < 0.0 { [last, next, largest] } else { [next, last, largest] };
-        let origin = [ray.origin[axes[0]], ray.origin[axes[1]], ray.origin[axes[2]]];
-        let t_per_z = 1.0 / f64::from(direction[axes[2]]);
-        let precise_shear =
-            [f64::from(direction[axes[0]]) * t_per_z, f64::from(direction[axes[1]]) * t_per_z];
+        AXES[usize::from(direction[largest] < 0.0)][largest]
+    }
+
+    /// Of an origin and a direction whose components are in the order of `axes`.
+    #[inline(always)]
+    pub(super) fn in_order(axes: [usize; 3], origin: [f32; 3], direction: [f32; 3]) -> Self {
+        let t_per_z = 1.0 / f64::from(direction[2]);
+        let precise_shear = [f64::from(direction[0]) * t_per_z, f64::from(direction[1]) * t_per_z];
         let shear = [precise_shear[0] as f32, precise_shear[1] as f32];
         Self { axes, origin, shear, precise_shear, t_per_z }
+    }
+}
+
+impl AsRef<Self> for Shear {
+    #[inline(always)]
+    fn as_ref(&self) -> &Self {
+        self
     }
 }
 
@@ -58,11 +79,11 @@ pub(super) struct Slabs {
 /// Rounding moves a ray, as its triangle tests and its planes see it, by less than this many half
 /// ulps of the largest coordinate in play: three for translating and shearing a corner, those of
 /// `t`, and three for the products and differences here.
-const THICKNESS: f32 = 20.0 * 0.5 * f32::EPSILON;
+pub(super) const THICKNESS: f32 = 20.0 * 0.5 * f32::EPSILON;
 
 /// Directions are not let be smaller, relative to their largest component: that moves the ray by
 /// less than a plane is thick, and keeps one over them finite.
-const SMALLEST: f32 = 1e-9;
+pub(super) const SMALLEST: f32 = 1e-9;
 
 impl Slabs {
     /// Planes get a thickness that covers every rounding of the triangle tests and of the planes'
@@ -70,23 +91,32 @@ impl Slabs {
     /// grown by that thickness.
     #[inline(always)]
     pub(super) fn new(ray: &Ray, reach: f32) -> Self {
-        let magnitude = |v: &[f32; 3]| greater(greater(v[0].abs(), v[1].abs()), v[2].abs());
-        let smallest = SMALLEST * magnitude(&ray.direction);
-        let thickness = THICKNESS * (magnitude(&ray.origin) + reach);
-        let mut slabs =
-            Self { inverse: [0.0; 3], enter: [0.0; 3], leave: [0.0; 3], backward: [0; 3] };
-        for axis in 0..3 {
-            let d = ray.direction[axis];
-            let inverse = 1.0 / if d.abs() < smallest { smallest.copysign(d) } else { d };
-            let offset = ray.origin[axis] * inverse;
-            let thick = thickness * inverse.abs();
-            slabs.inverse[axis] = inverse;
-            slabs.enter[axis] = offset + thick;
-            slabs.leave[axis] = offset - thick;
-            slabs.backward[axis] = usize::from(inverse < 0.0);
+        let smallest = SMALLEST * largest(&ray.direction);
+        let thickness = THICKNESS * (largest(&ray.origin) + reach);
+        let kept = |d: f32| if d.abs() < smallest { smallest.copysign(d) } else { d };
+        let inverse = ray.direction.map(|d| 1.0 / kept(d));
+        let [x, y, z] = inverse;
+        let offset = [ray.origin[0] * x, ray.origin[1] * y, ray.origin[2] * z];
+        let thick = inverse.map(|inverse| thickness * inverse.abs());
+        Self {
+            inverse,
+            enter: [offset[0] + thick[0], offset[1] + thick[1], offset[2] + thick[2]],
+            leave: [offset[0] - thick[0], offset[1] - thick[1], offset[2] - thick[2]],
+            backward: inverse.map(|inverse| usize::from(inverse < 0.0)),
         }
-        slabs
     }
+
+    /// Which way the ray goes: a bit for every axis, set where it goes down.
+    #[inline(always)]
+    pub(super) fn octant(&self) -> usize {
+        self.backward[0] | self.backward[1] << 1 | self.backward[2] << 2
+    }
+}
+
+/// The largest magnitude of a component.
+#[inline(always)]
+fn largest([x, y, z]: &[f32; 3]) -> f32 {
+    greater(greater(x.abs(), y.abs()), z.abs())
 }
 
 /// The largest coordinate of a box.

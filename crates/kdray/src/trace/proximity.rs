@@ -1,11 +1,12 @@
 //! What is near a point: the closest point of the surface, and the triangles within a distance.
 
 use super::Tracer;
+use super::apart::squared_bounds;
 use super::block::{Block, LANES};
 use super::near::{NearVisitor, visit_box, visit_near};
+use crate::geometry::Aabb;
 use crate::geometry::nearest::{Nearest, nearest_on_triangle};
 use crate::geometry::overlap::overlaps;
-use crate::geometry::{Aabb, Ray};
 
 /// The point of the surface closest to a query point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +50,7 @@ impl Tracer {
         let limit = f64::from(max_distance) * f64::from(max_distance);
         let mut search = Search { point, limit, best: None };
         let until = rounded_up(limit);
-        visit_near(&self.layout, point, until, &mut search);
+        visit_near(&self.trip.layout, point, until, &mut search);
         let (triangle, nearest) = search.best?;
         Some(ClosestPoint {
             point: nearest.point.map(|value| value as f32),
@@ -69,7 +70,7 @@ impl Tracer {
         }
         let limit = f64::from(radius) * f64::from(radius);
         let mut within = Within { center, limit, triangles };
-        visit_near(&self.layout, center, rounded_up(limit), &mut within);
+        visit_near(&self.trip.layout, center, rounded_up(limit), &mut within);
         triangles.sort_unstable();
         triangles.dedup();
     }
@@ -85,7 +86,7 @@ impl Tracer {
         if region.is_empty() || !(0..3).all(|axis| region.extent()[axis] >= 0.0) {
             return;
         }
-        visit_box(&self.layout, region, &mut |block| {
+        visit_box(&self.trip.layout, region, &mut |block| {
             for lane in 0..LANES {
                 let (triangle, corners) = block.triangle(lane);
                 if overlaps(&corners, region) {
@@ -95,17 +96,6 @@ impl Tracer {
         });
         triangles.sort_unstable();
         triangles.dedup();
-    }
-
-    /// Whether `point` is inside: whether a line from it to infinity crosses the surface an odd
-    /// number of times. Right for every closed mesh, because every crossing counts exactly once;
-    /// for a mesh that is not closed there is no right answer, and points on the surface may get
-    /// either.
-    #[must_use]
-    pub fn contains(&self, point: [f32; 3]) -> bool {
-        // Any direction would do; this one is not along anything that people model.
-        let ray = Ray::new(point, [0.439_504_65, 0.617_598_6, 0.652_231_5]);
-        self.count_hits(&ray) % 2 == 1
     }
 }
 
@@ -123,22 +113,33 @@ struct Search {
 }
 
 impl NearVisitor for Search {
-    #[inline]
+    #[inline(always)]
     fn block(&mut self, block: &Block) -> f32 {
-        let mut lanes = block.near(self.point, rounded_up(self.limit));
-        while lanes != 0 {
-            let lane = lanes.trailing_zeros() as usize;
-            lanes &= lanes - 1;
-            let (triangle, corners) = block.triangle(lane);
-            let nearest = nearest_on_triangle(self.point, &corners);
-            let tie = || self.best.is_none_or(|(best, _)| triangle < best);
-            let distance = nearest.squared_distance;
-            if distance < self.limit || distance == self.limit && tie() {
-                self.limit = distance;
-                self.best = Some((triangle, nearest));
+        let bounds = squared_bounds(block, self.point);
+        for lane in 0..LANES {
+            // Of a free lane not even an infinite limit is in reach.
+            if bounds[lane] <= rounded_up(self.limit) && bounds[lane] < f32::INFINITY {
+                self.look(block.triangle(lane));
             }
         }
         rounded_up(self.limit)
+    }
+}
+
+impl Search {
+    #[inline]
+    fn look(&mut self, (triangle, corners): (u32, [[f32; 3]; 3])) {
+        let best = self.best.map(|(best, _)| best);
+        if best == Some(triangle) {
+            return;
+        }
+        let nearest = nearest_on_triangle(self.point, &corners);
+        let tie = || best.is_none_or(|best| triangle < best);
+        let distance = nearest.squared_distance;
+        if distance < self.limit || distance == self.limit && tie() {
+            self.limit = distance;
+            self.best = Some((triangle, nearest));
+        }
     }
 }
 
@@ -152,10 +153,8 @@ struct Within<'a> {
 impl NearVisitor for Within<'_> {
     fn block(&mut self, block: &Block) -> f32 {
         let until = rounded_up(self.limit);
-        let mut lanes = block.near(self.center, until);
-        while lanes != 0 {
-            let lane = lanes.trailing_zeros() as usize;
-            lanes &= lanes - 1;
+        let bounds = squared_bounds(block, self.center);
+        for lane in (0..LANES).filter(|lane| bounds[*lane] <= until) {
             let (triangle, corners) = block.triangle(lane);
             if nearest_on_triangle(self.center, &corners).squared_distance <= self.limit {
                 self.triangles.push(triangle);

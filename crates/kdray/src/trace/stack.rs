@@ -5,57 +5,87 @@ use std::mem::MaybeUninit;
 use super::wide::Child;
 use crate::build::MAX_DEPTH;
 
-/// Every step takes one visit and puts back at most eight, and goes down a level at least.
-const CAPACITY: usize = 7 * (MAX_DEPTH as usize + 1) + 8;
+/// Every step takes one visit and puts back at most eight, and goes down a level at least. The
+/// last eight places are never on the stack: [`Stack::push_avx2`] writes eight whatever it pushes.
+const CAPACITY: usize = 7 * (MAX_DEPTH as usize + 1) + 16;
 
-/// A subtree to be visited, and where the ray enters it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Visit {
-    pub(super) child: Child,
-    pub(super) t_min: f32,
-}
-
-/// A stack of visits.
+/// A stack of subtrees to be visited, and of the `t` where the ray enters each.
 pub(super) struct Stack {
-    visits: [MaybeUninit<Visit>; CAPACITY],
+    children: [MaybeUninit<Child>; CAPACITY],
+    t_min: [MaybeUninit<f32>; CAPACITY],
     height: usize,
 }
 
 impl Stack {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Self { visits: [const { MaybeUninit::uninit() }; CAPACITY], height: 0 }
+        Self {
+            children: [const { MaybeUninit::uninit() }; CAPACITY],
+            t_min: [const { MaybeUninit::uninit() }; CAPACITY],
+            height: 0,
+        }
     }
 
     #[inline(always)]
-    pub(super) fn push(&mut self, visit: Visit) {
-        self.visits[self.height].write(visit);
+    pub(super) fn clear(&mut self) {
+        self.height = 0;
+    }
+
+    #[inline(always)]
+    pub(super) fn push(&mut self, child: Child, t_min: f32) {
+        debug_assert!(self.height < CAPACITY, "a level pushes seven");
+        // SAFETY: by the number of levels there is room above the height.
+        unsafe {
+            self.children.get_unchecked_mut(self.height).write(child);
+            self.t_min.get_unchecked_mut(self.height).write(t_min);
+        }
         self.height += 1;
     }
 
-    /// Pushes a visit below those of the last `count` that are nearer.
-    #[inline(always)]
-    pub(super) fn insert(&mut self, visit: Visit, count: usize) {
-        self.push(visit);
-        let mut place = self.height - 1;
-        for _ in 0..count {
-            // SAFETY: everything below the height was written.
-            let before = unsafe { self.visits[place - 1].assume_init() };
-            if before.t_min >= visit.t_min {
-                break;
-            }
-            self.visits[place].write(before);
-            place -= 1;
+    /// Pushes the first `count` of eight subtrees.
+    #[cfg(target_arch = "x86_64")]
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(super) fn push_avx2(
+        &mut self,
+        children: std::arch::x86_64::__m256i,
+        t_min: std::arch::x86_64::__m256,
+        count: usize,
+    ) {
+        use std::arch::x86_64::*;
+        debug_assert!(self.height + 8 <= CAPACITY, "a level pushes seven");
+        // SAFETY: by the number of levels there is room for eight above the height.
+        unsafe {
+            let children_end = self.children.as_mut_ptr().add(self.height);
+            let t_min_end = self.t_min.as_mut_ptr().add(self.height);
+            _mm256_storeu_si256(children_end.cast(), children);
+            _mm256_storeu_ps(t_min_end.cast(), t_min);
         }
-        self.visits[place].write(visit);
+        self.height += count;
     }
 
-    /// The visit on top.
+    /// The subtree on top of a stack that is not empty.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
-    pub(super) fn pop(&mut self) -> Option<Visit> {
-        self.height = self.height.checked_sub(1)?;
+    pub(super) fn take(&mut self) -> Child {
+        debug_assert!(self.height > 0, "there is one");
+        self.height -= 1;
         // SAFETY: everything below the old height was written.
-        Some(unsafe { self.visits.get_unchecked(self.height).assume_init() })
+        unsafe { self.children.get_unchecked(self.height).assume_init() }
+    }
+
+    /// The subtree on top, without those that the ray enters after `until`.
+    #[inline(always)]
+    pub(super) fn pop(&mut self, until: f32) -> Option<Child> {
+        loop {
+            self.height = self.height.checked_sub(1)?;
+            // SAFETY: everything below the old height was written.
+            unsafe {
+                if self.t_min.get_unchecked(self.height).assume_init() <= until {
+                    return Some(self.children.get_unchecked(self.height).assume_init());
+                }
+            }
+        }
     }
 }
 
@@ -64,14 +94,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn inserted_visits_are_popped_from_near_to_far() {
+    fn what_is_entered_too_late_is_passed_over() {
         let mut stack = Stack::new();
-        let visit = |t_min| Visit { child: Child(0), t_min };
-        stack.push(visit(0.5));
-        for (count, t_min) in [3.0, 1.0, 4.0, 1.0, 2.0].into_iter().enumerate() {
-            stack.insert(visit(t_min), count);
+        for (child, t_min) in [(1, 0.5), (2, 3.0), (3, 1.0), (4, 2.0)] {
+            stack.push(Child(child), t_min);
         }
-        let order: Vec<f32> = std::iter::from_fn(|| stack.pop()).map(|v| v.t_min).collect();
-        assert_eq!(order, [1.0, 1.0, 2.0, 3.0, 4.0, 0.5]);
+        assert_eq!(stack.pop(1.0), Some(Child(3)));
+        assert_eq!(stack.pop(1.0), Some(Child(1)));
+        assert_eq!(stack.pop(1.0), None);
     }
 }

@@ -1,71 +1,264 @@
-//! One step down: which children of a wide node the ray meets, and where.
+//! One step down: which children of a wide node the ray meets, in which order, and where.
 
+#[cfg(target_arch = "x86_64")]
+use super::prepare::{SMALLEST, THICKNESS};
 use super::prepare::{Slabs, greater, lesser};
-use super::wide::Wide;
+use super::stack::Stack;
+use super::wide::{Child, Wide};
+#[cfg(target_arch = "x86_64")]
+use crate::geometry::Ray;
 
-/// The children that the ray meets in `t_min..=t_max`, and where it enters each.
+/// The children that a ray meets, and where it enters them.
+#[derive(Clone, Copy)]
 pub(super) struct Met {
-    /// A bit for every child.
-    pub(super) children: u32,
-    pub(super) t_min: [f32; 8],
+    mask: u32,
+    t_enter: [f32; 8],
 }
 
-/// Tests the boxes one after the other.
+/// The children that the ray meets in `t_min..=t_max`. Tests the boxes one after the other.
 #[inline(always)]
-pub(super) fn step(wide: &Wide, slabs: &Slabs, [t_min, t_max]: [f32; 2]) -> Met {
-    let mut met = Met { children: 0, t_min: [t_min; 8] };
+pub(super) fn meet(wide: &Wide, slabs: &Slabs, [t_min, t_max]: [f32; 2]) -> Met {
+    let mut met = Met { mask: 0, t_enter: [t_min; 8] };
     for child in 0..8 {
         let mut leave = t_max;
         for axis in 0..3 {
             let backward = slabs.backward[axis];
             let near = wide.bounds[backward][axis][child] * slabs.inverse[axis];
             let far = wide.bounds[1 - backward][axis][child] * slabs.inverse[axis];
-            met.t_min[child] = greater(met.t_min[child], near - slabs.enter[axis]);
+            met.t_enter[child] = greater(met.t_enter[child], near - slabs.enter[axis]);
             leave = lesser(leave, far - slabs.leave[axis]);
         }
-        met.children |= u32::from(met.t_min[child] <= leave) << child;
+        met.mask |= u32::from(met.t_enter[child] <= leave) << child;
     }
     met
 }
 
-/// [`step`] with all boxes at once: the same arithmetic.
+/// The nearest of the children that were met; the others go on the stack, the farthest first.
+#[inline(always)]
+pub(super) fn nearest(wide: &Wide, octant: usize, met: &Met, stack: &mut Stack) -> Option<Child> {
+    if met.mask.count_ones() == 2 {
+        return Some(nearer_of_two(wide, met.mask, &met.t_enter, stack));
+    }
+    let mut nearest = None;
+    for child in wide.far_to_near(octant).filter(|child| met.mask >> child & 1 == 1) {
+        if let Some(farther) = nearest.replace(child) {
+            stack.push(wide.children[farther], met.t_enter[farther]);
+        }
+    }
+    nearest.map(|child| wide.children[child])
+}
+
+/// Puts the children that were met on the stack, the farthest first.
+#[inline(always)]
+pub(super) fn push(wide: &Wide, octant: usize, met: &Met, stack: &mut Stack) {
+    for child in wide.far_to_near(octant).filter(|child| met.mask >> child & 1 == 1) {
+        stack.push(wide.children[child], met.t_enter[child]);
+    }
+}
+
+/// Of two children that were met, the one that the ray enters first; the other goes on the stack.
+/// It is the same by the order of the octant, but takes longer to find out.
+#[inline(always)]
+fn nearer_of_two(wide: &Wide, mask: u32, t_enter: &[f32; 8], stack: &mut Stack) -> Child {
+    let [a, b] = [mask, mask & (mask - 1)].map(|mask| mask.trailing_zeros() as usize & 7);
+    let (near, far) = if t_enter[b] < t_enter[a] { (b, a) } else { (a, b) };
+    stack.push(wide.children[far], t_enter[far]);
+    wide.children[near]
+}
+
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy)]
+pub(super) struct Lanes {
+    inverse: [std::arch::x86_64::__m256; 3],
+    enter: [std::arch::x86_64::__m256; 3],
+    leave: [std::arch::x86_64::__m256; 3],
+    pub(super) octant: usize,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Lanes {
+    /// The arithmetic of [`Slabs::new`], on all axes at once.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(super) fn new(ray: &Ray, reach: f32) -> Self {
+        use std::arch::x86_64::*;
+        let all = |value: f32| _mm_set1_ps(value);
+        let magnitude = |v: __m128| _mm_andnot_ps(all(-0.0), v);
+        let largest = |v: __m128| {
+            let two = _mm_max_ss(v, _mm_movehdup_ps(v));
+            _mm_broadcastss_ps(_mm_max_ss(two, _mm_movehl_ps(v, v)))
+        };
+        // SAFETY: a ray is eight numbers; the fourth lanes, its limits, are of no consequence.
+        let [origin, direction] = unsafe {
+            let start = std::ptr::from_ref(ray).cast::<f32>();
+            [_mm_loadu_ps(start), _mm_loadu_ps(start.add(4))]
+        };
+        let smallest = _mm_mul_ps(all(SMALLEST), largest(magnitude(direction)));
+        let reach = _mm_add_ps(largest(magnitude(origin)), all(reach));
+        let thickness = _mm_mul_ps(all(THICKNESS), reach);
+        let small = _mm_cmplt_ps(magnitude(direction), smallest);
+        let signed = _mm_or_ps(_mm_and_ps(all(-0.0), direction), smallest);
+        let inverse = _mm_div_ps(all(1.0), _mm_blendv_ps(direction, signed, small));
+        let offset = _mm_mul_ps(origin, inverse);
+        let thick = _mm_mul_ps(thickness, magnitude(inverse));
+        let axes = |v: __m128| {
+            [v, _mm_movehdup_ps(v), _mm_movehl_ps(v, v)].map(|axis| _mm256_broadcastss_ps(axis))
+        };
+        Self {
+            inverse: axes(inverse),
+            enter: axes(_mm_add_ps(offset, thick)),
+            leave: axes(_mm_sub_ps(offset, thick)),
+            octant: _mm_movemask_ps(inverse) as usize & 7,
+        }
+    }
+}
+
+/// By octant: of a node's six rows of bounds those that come first, by axis, and then those that
+/// come last.
+#[cfg(target_arch = "x86_64")]
+pub(super) static ROWS: [[usize; 6]; 8] = {
+    let mut rows = [[0; 6]; 8];
+    let mut octant = 0;
+    while octant < 8 {
+        let mut axis = 0;
+        while axis < 3 {
+            let backward = octant >> axis & 1;
+            rows[octant][axis] = 3 * backward + axis;
+            rows[octant][3 + axis] = 3 * (1 - backward) + axis;
+            axis += 1;
+        }
+        octant += 1;
+    }
+    rows
+};
+
+/// The children that a ray meets, as all ones, and where it enters them.
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy)]
+pub(super) struct MetLanes {
+    met: std::arch::x86_64::__m256,
+    t_enter: std::arch::x86_64::__m256,
+}
+
+/// [`meet`] with all boxes at once: the same arithmetic.
 ///
-/// `V` is the visitor of the traversal, so that each traversal has a step of its own and the
-/// compiler makes it part of the loop.
+/// `V` is the visitor of the traversal, here and below: each traversal has functions of its own, so
+/// that the compiler makes them part of the loop.
 #[cfg(target_arch = "x86_64")]
 #[inline]
 #[target_feature(enable = "avx2")]
 #[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
-pub(super) fn step_avx2<V>(wide: &Wide, slabs: &Slabs, [t_min, t_max]: [f32; 2]) -> Met {
+pub(super) fn meet_avx2<V>(wide: &Wide, slabs: &Lanes, [t_min, t_max]: [f32; 2]) -> MetLanes {
     use std::arch::x86_64::*;
-    let mut enter = _mm256_set1_ps(t_min);
+    let bounds = wide.bounds.as_flattened();
+    // SAFETY: an octant is less than eight.
+    let rows = unsafe { ROWS.get_unchecked(slabs.octant) };
+    let mut t_enter = _mm256_set1_ps(t_min);
     let mut leave = _mm256_set1_ps(t_max);
     for axis in 0..3 {
-        let backward = slabs.backward[axis];
-        let inverse = _mm256_set1_ps(slabs.inverse[axis]);
-        // SAFETY: rows are eight lanes, aligned like the node.
-        let (near, far) = unsafe {
-            let near = wide.bounds.get_unchecked(backward)[axis].as_ptr();
-            let far = wide.bounds.get_unchecked(1 - backward)[axis].as_ptr();
-            (_mm256_load_ps(near), _mm256_load_ps(far))
-        };
-        let near = _mm256_mul_ps(near, inverse);
-        let far = _mm256_mul_ps(far, inverse);
-        enter = _mm256_max_ps(enter, _mm256_sub_ps(near, _mm256_set1_ps(slabs.enter[axis])));
-        leave = _mm256_min_ps(leave, _mm256_sub_ps(far, _mm256_set1_ps(slabs.leave[axis])));
+        // SAFETY: there are six rows; they are eight lanes each, aligned like the node.
+        let [near, far] = [rows[axis], rows[3 + axis]]
+            .map(|row| unsafe { _mm256_load_ps(bounds.get_unchecked(row).as_ptr()) });
+        let near = _mm256_mul_ps(near, slabs.inverse[axis]);
+        let far = _mm256_mul_ps(far, slabs.inverse[axis]);
+        t_enter = _mm256_max_ps(t_enter, _mm256_sub_ps(near, slabs.enter[axis]));
+        leave = _mm256_min_ps(leave, _mm256_sub_ps(far, slabs.leave[axis]));
     }
-    let met = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(enter, leave));
-    let mut t_min = [0.0; 8];
-    // SAFETY: eight lanes fit.
-    unsafe { _mm256_storeu_ps(t_min.as_mut_ptr(), enter) };
-    Met { children: met as u32, t_min }
+    MetLanes { met: _mm256_cmp_ps::<_CMP_LE_OQ>(t_enter, leave), t_enter }
 }
+
+/// [`nearest`], with jumps for one child and for two: a single ray waits for nothing but the result.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+#[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+pub(super) fn nearest_avx2<V>(
+    wide: &Wide,
+    octant: usize,
+    lanes: &MetLanes,
+    stack: &mut Stack,
+) -> Option<Child> {
+    use std::arch::x86_64::*;
+    let mask = _mm256_movemask_ps(lanes.met) as u32;
+    if mask & mask.wrapping_sub(1) == 0 {
+        // One child or none, most of the time.
+        return (mask != 0).then(|| wide.children[mask.trailing_zeros() as usize & 7]);
+    }
+    let rest = mask & (mask - 1);
+    if rest & (rest - 1) == 0 {
+        let mut t_enter = [0.0; 8];
+        // SAFETY: eight lanes fit.
+        unsafe { _mm256_storeu_ps(t_enter.as_mut_ptr(), lanes.t_enter) };
+        return Some(nearer_of_two(wide, mask, &t_enter, stack));
+    }
+    push_avx2::<V>(wide, octant, lanes, stack);
+    Some(stack.take())
+}
+
+/// [`push`], without a jump: one that takes turns with others has its next step foreseen.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+#[target_feature(enable = "avx2,popcnt")]
+pub(super) fn push_avx2<V>(wide: &Wide, octant: usize, lanes: &MetLanes, stack: &mut Stack) {
+    use std::arch::x86_64::*;
+    let (places, count) = far_to_near_avx2::<V>(wide, octant, lanes.met);
+    // SAFETY: eight lanes, aligned like the node.
+    let children = unsafe { _mm256_load_si256(wide.children.as_ptr().cast()) };
+    let children = _mm256_permutevar8x32_epi32(children, places);
+    let t_enter = _mm256_permutevar8x32_ps(lanes.t_enter, places);
+    stack.push_avx2(children, t_enter, count);
+}
+
+/// The places of the children that were met, the farthest first, and how many they are. Of each
+/// lane the lowest three bits count.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+#[target_feature(enable = "avx2,popcnt")]
+#[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
+pub(super) fn far_to_near_avx2<V>(
+    wide: &Wide,
+    octant: usize,
+    met: std::arch::x86_64::__m256,
+) -> (std::arch::x86_64::__m256i, usize) {
+    use std::arch::x86_64::*;
+    // SAFETY: an octant is less than eight.
+    let places = nibbles(unsafe { *wide.order.get_unchecked(octant) });
+    let met = _mm256_permutevar8x32_epi32(_mm256_castps_si256(met), places);
+    let met = _mm256_movemask_ps(_mm256_castsi256_ps(met)) as u32;
+    let places = _mm256_permutevar8x32_epi32(places, nibbles(PLACES[met as usize & 255]));
+    (places, met.count_ones() as usize)
+}
+
+/// Eight numbers of four bits, the lowest first; of each lane the lowest three bits count.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+#[target_feature(enable = "avx2")]
+fn nibbles(packed: u32) -> std::arch::x86_64::__m256i {
+    use std::arch::x86_64::*;
+    let shifts = _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28);
+    _mm256_srlv_epi32(_mm256_set1_epi32(packed as i32), shifts)
+}
+
+/// The places of the bits of a byte, four bits each, the lowest first.
+#[cfg(target_arch = "x86_64")]
+static PLACES: [u32; 256] = {
+    let mut places = [0; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        let (mut rest, mut count) = (byte as u32, 0);
+        while rest != 0 {
+            places[byte] |= rest.trailing_zeros() << (4 * count);
+            rest &= rest - 1;
+            count += 1;
+        }
+        byte += 1;
+    }
+    places
+};
 
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
     use super::*;
-    use crate::geometry::{Aabb, Ray};
-    use crate::trace::wide::Child;
+    use crate::geometry::Aabb;
 
     /// Numbers without a pattern, in 0..1.
     fn noise(state: &mut u32) -> f32 {
@@ -80,7 +273,21 @@ mod tests {
             let bounds = Aabb::of_points(&[corner(), corner()]);
             wide.set(place, &bounds, Child(place as u32));
         }
+        let order = [(); 8].map(|()| {
+            let mut places = [0, 1, 2, 3, 4, 5, 6, 7];
+            for last in (1..8).rev() {
+                places.swap(last, ((last + 1) as f32 * noise(state)) as usize);
+            }
+            places.iter().fold(0, |order, place| order << 4 | place)
+        });
+        wide.set_order(order, 8);
         wide
+    }
+
+    /// The nearest child and then what is on the stack.
+    fn popped(nearest: Option<Child>, mut stack: Stack) -> Vec<Child> {
+        let rest = std::iter::from_fn(|| stack.pop(f32::INFINITY));
+        nearest.into_iter().chain(rest).collect()
     }
 
     #[test]
@@ -96,18 +303,28 @@ mod tests {
             let mut component =
                 || if noise(&mut state) < 0.1 { 0.0 } else { 2.0 * noise(&mut state) - 1.0 };
             let origin = [0.5 + 0.5 * component(), 0.5 + 0.5 * component(), component()];
-            let ray = Ray::new(origin, [0.3 * component(), 0.3 * component(), 0.5]);
+            let direction = [0.3 * component(), 0.3 * component(), 0.5 * component()];
+            let ray = Ray::new(origin, direction);
             let slabs = Slabs::new(&ray, 1.0);
             let interval = [0.2 * noise(&mut state), 20.0 * noise(&mut state)];
-            let plain = step(&wide, &slabs, interval);
+            let mut stacks = [(); 4].map(|()| Stack::new());
+            let [a, b, c, d] = &mut stacks;
+            let met = meet(&wide, &slabs, interval);
+            let plain = nearest(&wide, slabs.octant(), &met, a);
+            push(&wide, slabs.octant(), &met, b);
             // SAFETY: the processor has AVX2.
-            let lanes = unsafe { step_avx2::<()>(&wide, &slabs, interval) };
-            assert_eq!(plain.children, lanes.children, "{wide:?} {slabs:?} {interval:?}");
-            for child in (0..8).filter(|child| plain.children >> child & 1 == 1) {
-                assert_eq!(plain.t_min[child], lanes.t_min[child]);
-                count += 1;
-            }
+            let fast = unsafe {
+                let lanes = Lanes::new(&ray, 1.0);
+                let met = meet_avx2::<()>(&wide, &lanes, interval);
+                push_avx2::<()>(&wide, lanes.octant, &met, d);
+                nearest_avx2::<()>(&wide, lanes.octant, &met, c)
+            };
+            let [a, b, c, d] = stacks;
+            let (plain, fast) = (popped(plain, a), popped(fast, c));
+            assert_eq!(plain, fast, "{wide:?} {slabs:?} {interval:?}");
+            assert_eq!(popped(None, b), popped(None, d), "{wide:?} {slabs:?} {interval:?}");
+            count += plain.len();
         }
-        assert!(count > 50_000, "only {count} children were met");
+        assert!(count > 40_000, "only {count} children were met");
     }
 }

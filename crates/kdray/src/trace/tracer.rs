@@ -1,18 +1,20 @@
 //! What a mesh and its tree know for queries.
 
 use super::only::Only;
-use super::prepare::{Slabs, reach};
-use super::traverse::{Visitor, traverse};
+use super::prepare::reach;
+use super::simd::Best;
+use super::traverse::{Trip, Visitor, traverse};
 use super::wide::Layout;
-use crate::geometry::{Hit, Mesh, Ray};
+use crate::geometry::{Aabb, Hit, Mesh, Ray};
 use crate::tree::Tree;
 
 /// Answers queries over a mesh and its tree. Owns what it needs; share it between threads.
 ///
 /// Copies triangles in leaf order, eight to a block: [`Tracer::size_bytes`] says what that takes.
 pub struct Tracer {
-    pub(super) layout: Layout,
-    reach: f32,
+    pub(super) trip: Trip,
+    pub(super) bounds: Aabb,
+    pub(super) triangle_count: usize,
 }
 
 /// What a ray met on its way.
@@ -35,7 +37,10 @@ impl Tracer {
     #[must_use]
     pub fn new(mesh: &Mesh, tree: &Tree) -> Self {
         assert_eq!(mesh.triangles().len(), tree.triangle_count(), "the tree is of another mesh");
-        Self { layout: Layout::new(mesh, tree), reach: reach(&tree.bounds()) }
+        let bounds = tree.bounds();
+        let (layout, reach) = (Layout::new(mesh, tree), reach(&bounds));
+        let trip = Trip { layout, reach, simd: Best::detect() };
+        Self { trip, bounds, triangle_count: tree.triangle_count() }
     }
 
     /// Queries that see only the triangles for which `accept` holds: a visibility mask, or
@@ -105,18 +110,23 @@ impl Tracer {
         self.all().count_hits(ray)
     }
 
+    /// The vector instructions that this processor lets queries use: `avx512`, `avx2` or `none`.
+    #[must_use]
+    pub fn simd() -> &'static str {
+        Best::detect().name()
+    }
+
     /// Bytes that the tracer holds.
     #[must_use]
     pub fn size_bytes(&self) -> usize {
-        size_of_val(&self.layout.wides[..]) + size_of_val(&self.layout.blocks[..])
+        size_of_val(&self.trip.layout.wides[..]) + size_of_val(&self.trip.layout.blocks[..])
     }
 
     /// Shows what lies along the ray from front to back.
     #[inline]
     pub(super) fn visit(&self, ray: &Ray, visitor: &mut impl Visitor) {
         if ray.is_valid() {
-            let slabs = Slabs::new(ray, self.reach);
-            traverse(&self.layout, ray, &slabs, visitor);
+            traverse(&self.trip, ray, visitor);
         }
     }
 }

@@ -1,18 +1,14 @@
 //! The tree as traversal reads it: nodes of eight boxes.
 //!
-//! Wide nodes are made from the exact tree: a node stands for a subtree of it, cut off below eight
-//! descendants. These are the ones that a ray is most likely to meet, found by opening the one with
-//! the largest surface again and again; empty leaves are left out. A child's box holds the parts
-//! of its triangles inside its cell and is often much smaller than the cell. The cells do not
-//! overlap, so neither do the boxes, and a ray comes to them one after the other.
+//! Eight boxes are tested together. The cells of a tree do not overlap, so neither do the boxes,
+//! and a ray comes to them one after the other. In which order depends on the signs of its
+//! direction only, so a node has the order for every octant.
 
-use rayon::prelude::*;
-
-use super::block::{Block, LANES};
-use crate::geometry::clip::clip;
+use super::block::Block;
+use super::collapse::collapse;
 use crate::geometry::{Aabb, Mesh};
 use crate::memory::with_huge_pages;
-use crate::tree::{Kind, Node, Tree};
+use crate::tree::Tree;
 
 /// Eight boxes, and what is in them. Free places have empty boxes.
 #[repr(C, align(32))]
@@ -21,6 +17,9 @@ pub(super) struct Wide {
     /// By end (lower, upper), axis and child.
     pub(super) bounds: [[[f32; 8]; 3]; 2],
     pub(super) children: [Child; 8],
+    /// By octant of directions ([`Slabs::octant`](super::prepare::Slabs::octant)): the places of
+    /// the children from the farthest to the nearest, four bits each, the lowest first.
+    pub(super) order: [u32; 8],
 }
 
 /// What is in a box: another wide node, or the first of a leaf's blocks.
@@ -30,6 +29,19 @@ pub(super) struct Child(pub(super) u32);
 
 impl Child {
     const LEAF: u32 = 1 << 31;
+
+    /// Nothing: a leaf that no layout has.
+    pub(super) const NONE: Self = Self(u32::MAX);
+
+    /// The leaf whose blocks start there.
+    pub(super) fn leaf(first: usize) -> Self {
+        Self(first as u32 | Self::LEAF)
+    }
+
+    /// The same child where wide nodes and blocks start at those.
+    fn moved(self, wides: u32, blocks: u32) -> Self {
+        Self(self.0 + if self.block().is_some() { blocks } else { wides })
+    }
 
     /// The first block of a leaf, or `None` for a wide node.
     #[inline(always)]
@@ -42,6 +54,7 @@ impl Wide {
     pub(super) const EMPTY: Self = Self {
         bounds: [[[f32::INFINITY; 8]; 3], [[f32::NEG_INFINITY; 8]; 3]],
         children: [Child(0); 8],
+        order: [0x7654_3210; 8],
     };
 
     pub(super) fn set(&mut self, place: usize, bounds: &Aabb, child: Child) {
@@ -50,6 +63,26 @@ impl Wide {
             self.bounds[1][axis][place] = bounds.upper[axis];
         }
         self.children[place] = child;
+    }
+
+    /// The same node where the layout of its subtree starts at those wide nodes and blocks.
+    fn moved(mut self, wides: u32, blocks: u32) -> Self {
+        self.children = self.children.map(|child| child.moved(wides, blocks));
+        self
+    }
+
+    /// Says in which order rays of every octant meet the first `count` children; free places come
+    /// behind them.
+    pub(super) fn set_order(&mut self, order: [u32; 8], count: usize) {
+        let free = (count..8).fold(0, |free, place| free | (place as u32) << (4 * place));
+        self.order = order.map(|order| order | free);
+    }
+
+    /// The places of the children as rays of the octant meet them, the last one first.
+    #[inline(always)]
+    pub(super) fn far_to_near(&self, octant: usize) -> impl Iterator<Item = usize> + use<> {
+        let order = self.order[octant];
+        (0..8).map(move |index| (order >> (4 * index)) as usize & 7)
     }
 }
 
@@ -61,112 +94,27 @@ pub(super) struct Layout {
 
 impl Layout {
     pub(super) fn new(mesh: &Mesh, tree: &Tree) -> Self {
-        let bounds = tight_bounds(mesh, tree);
-        let layout = Self { wides: Vec::new(), blocks: with_huge_pages(block_count(tree)) };
-        let mut collapse = Collapse { mesh, tree, bounds, layout };
-        collapse.wide(0);
-        let Self { wides, blocks } = collapse.layout;
+        let Self { wides, blocks } = collapse(mesh, tree);
         let mut compact = with_huge_pages(wides.len());
         compact.extend_from_slice(&wides);
         Self { wides: compact, blocks }
     }
-}
 
-/// How many blocks the leaves of a tree fill.
-fn block_count(tree: &Tree) -> usize {
-    let blocks = |node: &Node| match node.kind() {
-        Kind::Leaf { count, .. } => count.div_ceil(LANES),
-        Kind::Inner { .. } => 0,
-    };
-    tree.nodes().iter().map(blocks).sum()
-}
-
-/// By node: bounds of the parts of its triangles inside its cell.
-fn tight_bounds(mesh: &Mesh, tree: &Tree) -> Vec<Aabb> {
-    let nodes = tree.nodes();
-    let mut bounds = vec![tree.bounds(); nodes.len()];
-    for (index, node) in nodes.iter().enumerate() {
-        if let Kind::Inner { axis, position, right } = node.kind() {
-            let [left_cell, right_cell] = bounds[index].cut(axis, position);
-            (bounds[index + 1], bounds[right]) = (left_cell, right_cell);
-        }
-    }
-    bounds.par_iter_mut().zip(nodes).for_each(|(bounds, node)| {
-        if let Kind::Leaf { first, count } = node.kind() {
-            let triangles = &tree.references()[first..first + count];
-            let part = |triangle: &u32| clip(&mesh.triangle(*triangle as usize), bounds);
-            *bounds =
-                triangles.iter().filter_map(part).fold(Aabb::EMPTY, |all, part| all.union(&part));
-        }
-    });
-    for (index, node) in nodes.iter().enumerate().rev() {
-        if let Kind::Inner { right, .. } = node.kind() {
-            bounds[index] = bounds[index + 1].union(&bounds[right]);
-        }
-    }
-    bounds
-}
-
-struct Collapse<'a> {
-    mesh: &'a Mesh,
-    tree: &'a Tree,
-    bounds: Vec<Aabb>,
-    layout: Layout,
-}
-
-impl Collapse<'_> {
-    /// Lays out the subtree at `node` below a wide node of its own; gives that node's index.
-    fn wide(&mut self, node: usize) -> u32 {
-        let index = self.layout.wides.len();
-        self.layout.wides.push(Wide::EMPTY);
-        let mut wide = Wide::EMPTY;
-        for (place, descendant) in self.descendants(node).into_iter().enumerate() {
-            let bounds = self.bounds[descendant];
-            let child = self.child(descendant);
-            wide.set(place, &bounds, child);
-        }
-        self.layout.wides[index] = wide;
-        index as u32
+    /// Adds another layout behind this one; gives the child of that one here.
+    pub(super) fn append(&mut self, child: Child, other: Self) -> Child {
+        let (wides, blocks) = (self.wides.len() as u32, self.blocks.len() as u32);
+        self.wides.extend(other.wides.into_iter().map(|wide| wide.moved(wides, blocks)));
+        self.blocks.extend(other.blocks);
+        child.moved(wides, blocks)
     }
 
-    /// At most eight descendants that hold everything below `node`.
-    fn descendants(&self, node: usize) -> Vec<usize> {
-        let is_empty = |node: usize| self.bounds[node].is_empty();
-        let children = |node: usize| match self.tree.nodes()[node].kind() {
-            Kind::Inner { right, .. } => Some([node + 1, right]),
-            Kind::Leaf { .. } => None,
-        };
-        let mut open: Vec<usize> = if is_empty(node) { Vec::new() } else { vec![node] };
-        loop {
-            let area = |place: &usize| self.bounds[open[*place]].half_area();
-            let largest = (0..open.len())
-                .filter(|place| children(open[*place]).is_some())
-                .max_by(|a, b| area(a).total_cmp(&area(b)));
-            let Some(largest) = largest else { return open };
-            let below = children(open[largest]).into_iter().flatten();
-            let below: Vec<usize> = below.filter(|child| !is_empty(*child)).collect();
-            if open.len() - 1 + below.len() > 8 {
-                return open;
-            }
-            open.splice(largest..=largest, below);
+    /// Where a wide node or the first block of a leaf is in memory, and how long it is.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(super) fn place(&self, child: Child) -> (*const i8, usize) {
+        match child.block() {
+            None => (self.wides.as_ptr().wrapping_add(child.0 as usize).cast(), size_of::<Wide>()),
+            Some(first) => (self.blocks.as_ptr().wrapping_add(first).cast(), size_of::<Block>()),
         }
-    }
-
-    fn child(&mut self, node: usize) -> Child {
-        match self.tree.nodes()[node].kind() {
-            Kind::Inner { .. } => Child(self.wide(node)),
-            Kind::Leaf { first, count } => self.leaf(first, count),
-        }
-    }
-
-    fn leaf(&mut self, first: usize, count: usize) -> Child {
-        let start = self.layout.blocks.len() as u32;
-        let chunks = self.tree.references()[first..first + count].chunks(LANES);
-        let last = chunks.len() - 1;
-        for (index, chunk) in chunks.enumerate() {
-            let corners = |triangle: u32| self.mesh.triangle(triangle as usize);
-            self.layout.blocks.push(Block::new(chunk, index == last, corners));
-        }
-        Child(start | Child::LEAF)
     }
 }

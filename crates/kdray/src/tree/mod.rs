@@ -92,6 +92,14 @@ impl Tree {
     }
 
     pub(crate) fn from_growth(mesh: &Mesh, growth: Growth, cost: Cost) -> Self {
+        Self::from_parts(mesh, growth.nodes, growth.references, cost)
+    }
+
+    /// The tree whose parts a builder on another device made. Nothing is checked: parts that make
+    /// no tree give a tree that makes a tracer panic.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn from_parts(mesh: &Mesh, nodes: Vec<Node>, references: Vec<u32>, cost: Cost) -> Self {
         let header = Header {
             bounds: mesh.bounds(),
             frame: mesh.frame(),
@@ -99,7 +107,6 @@ impl Tree {
             triangles: mesh.triangles().len() as u32,
             mesh: mesh.fingerprint(),
         };
-        let Growth { nodes, references } = growth;
         Self { header, storage: Storage::Owned { nodes, references } }
     }
 

@@ -85,15 +85,17 @@ pub(super) fn events_of(bounds: &Aabb, axis: usize, reference: u32) -> (Event, O
 }
 
 /// Bits that compare, as an unsigned integer, like the number.
+#[must_use]
 #[inline(always)]
-pub(super) fn ordered(position: f32) -> u32 {
+pub fn ordered(position: f32) -> u32 {
     let bits = position.to_bits();
     bits ^ (((bits as i32 >> 31) as u32) | 0x8000_0000)
 }
 
 /// The number of which `ordered` gave these bits.
+#[must_use]
 #[inline(always)]
-pub(super) fn position_of(ordered: u32) -> f32 {
+pub fn position_of(ordered: u32) -> f32 {
     f32::from_bits(ordered ^ (!((ordered as i32 >> 31) as u32) | 0x8000_0000))
 }
 

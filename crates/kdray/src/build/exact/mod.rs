@@ -19,6 +19,7 @@ use super::meter::Meter;
 use super::options::Limits;
 use super::{BuildError, Growth, NodeCost};
 use crate::geometry::{Aabb, Mesh};
+pub use event::{ordered, position_of};
 use small::Small;
 
 /// Everything a task of the build needs to know.

@@ -1,0 +1,108 @@
+//! Points and regions.
+
+use std::ops::ControlFlow;
+
+use super::{Batch, BatchError, Lists};
+use crate::geometry::Aabb;
+use crate::geometry::vector::{dot, minus};
+use crate::trace::{ClosestPoint, Sign, Tracer};
+
+/// Queries of points. They panic if there are not as many answers as points, and see every
+/// triangle.
+impl Batch<'_> {
+    /// Writes to `closest[i]` the [closest point](crate::Tracer::closest_point) of `points[i]`
+    /// within `max_distance`. Points near each other are always asked one after the other.
+    pub fn closest_points(
+        &self,
+        points: &[[f32; 3]],
+        max_distance: f32,
+        closest: &mut [Option<ClosestPoint>],
+    ) -> Result<(), BatchError> {
+        let ask = |last: &mut Last, _: usize, point: &_| {
+            last.closest_point(self.tracer, *point, max_distance)
+        };
+        self.fill(points, closest, true, |point| self.key_of_point(point), ask)
+    }
+
+    /// Writes to `distances[i]` the [signed distance](crate::Tracer::signed_distance) of
+    /// `points[i]`, as [`Batch::closest_points`].
+    pub fn signed_distances(
+        &self,
+        points: &[[f32; 3]],
+        sign: Sign,
+        distances: &mut [Option<f32>],
+    ) -> Result<(), BatchError> {
+        let ask = |last: &mut Last, _: usize, point: &_| {
+            let closest = last.closest_point(self.tracer, *point, f32::INFINITY)?;
+            Some(sign.of(self.tracer, *point, closest.distance))
+        };
+        self.fill(points, distances, true, |point| self.key_of_point(point), ask)
+    }
+
+    /// Writes to `inside[i]` whether `points[i]` is inside.
+    pub fn contains(
+        &self,
+        points: &[[f32; 3]],
+        sign: Sign,
+        inside: &mut [bool],
+    ) -> Result<(), BatchError> {
+        let ask = |(): &mut (), _: usize, point: &_| sign.is_inside(self.tracer, *point);
+        let reorder = self.options.reorder;
+        self.fill(points, inside, reorder, |point| self.key_of_point(point), ask)
+    }
+
+    /// Gives `sink` the [triangles within](crate::Tracer::within_sphere) `radius` of each point,
+    /// as [`Batch::first_hits`] gives hits.
+    pub fn within_spheres(
+        &self,
+        centers: &[[f32; 3]],
+        radius: f32,
+        sink: impl FnMut(Lists<u32>) -> ControlFlow<()>,
+    ) -> Result<(), BatchError> {
+        let ask = |_: usize, center: &_, triangles: &mut _| {
+            self.tracer.within_sphere(*center, radius, triangles);
+        };
+        self.stream(centers, ask, sink)
+    }
+
+    /// Gives `sink` the [triangles within](crate::Tracer::within_box) each region, as
+    /// [`Batch::first_hits`] gives hits.
+    pub fn within_boxes(
+        &self,
+        regions: &[Aabb],
+        sink: impl FnMut(Lists<u32>) -> ControlFlow<()>,
+    ) -> Result<(), BatchError> {
+        let ask = |_: usize, region: &_, triangles: &mut _| {
+            self.tracer.within_box(region, triangles);
+        };
+        self.stream(regions, ask, sink)
+    }
+}
+
+/// The last point that was asked about, and how far from the surface it is.
+///
+/// The next point is no farther than that and the way to it: a bound to begin with.
+#[derive(Default)]
+struct Last(Option<([f32; 3], f32)>);
+
+/// More than the roundings of such a bound, relative to it.
+const SLACK: f32 = 8.0 * f32::EPSILON;
+
+impl Last {
+    fn closest_point(
+        &mut self,
+        tracer: &Tracer,
+        point: [f32; 3],
+        max_distance: f32,
+    ) -> Option<ClosestPoint> {
+        let bound = self.0.map_or(f32::INFINITY, |(last, distance)| {
+            let way = minus(point.map(f64::from), last.map(f64::from));
+            (dot(way, way).sqrt() as f32 + distance) * (1.0 + SLACK) + f32::MIN_POSITIVE
+        });
+        // A distance that is no number stays one, and finds nothing.
+        let limit = if bound < max_distance { bound } else { max_distance };
+        let closest = tracer.closest_point(point, limit)?;
+        self.0 = Some((point, closest.distance));
+        Some(closest)
+    }
+}

@@ -1,0 +1,93 @@
+//! Which triangles a ray may hit, or which rays a triangle, many at once.
+
+use super::vector::{Mask, Vector};
+
+/// Lanes whose ray may hit its triangle in the interval that was asked for.
+pub(super) struct Sifted<V> {
+    /// A bit a lane; the same below.
+    pub(super) maybe: u32,
+    /// Those whose line crosses for certain, wherever.
+    pub(super) surely: u32,
+    /// Those that are hit in the interval for certain.
+    pub(super) inside: u32,
+    /// No hit of a lane comes before.
+    pub(super) early: V,
+}
+
+/// A corner in ray space, with the arithmetic of [`Shear`](super::prepare::Shear).
+#[inline(always)]
+pub(super) fn sheared<V: Vector>([x, y, z]: [V; 3], origin: &[V; 3], slope: &[V; 2]) -> [V; 3] {
+    let (x, y, z) = (x - origin[0], y - origin[1], z - origin[2]);
+    [x - slope[0] * z, y - slope[1] * z, z]
+}
+
+#[inline(always)]
+fn edge<V: Vector>(p: [V; 3], q: [V; 3]) -> V {
+    p[0] * q[1] - p[1] * q[0]
+}
+
+/// The lanes whose edge functions do not differ in sign, with the arithmetic of
+/// [`crossing`](super::intersect::crossing), but for those that are hit before or after the interval
+/// for certain. Corners are in ray space.
+#[inline(always)]
+pub(super) fn sift<V: Vector>(
+    corners: &[[V; 3]; 3],
+    t_per_z: V,
+    [t_min, t_max]: [V; 2],
+) -> Sifted<V> {
+    let [a, b, c] = *corners;
+    let edges = [edge(c, b), edge(a, c), edge(b, a)];
+    let lowest = edges[0].min(edges[1]).min(edges[2]);
+    let highest = edges[0].max(edges[1]).max(edges[2]);
+    let zero = t_per_z.all(0.0);
+    let maybe = zero.is_at_most(lowest).or(highest.is_at_most(zero));
+    if maybe.bits() == 0 {
+        return Sifted { maybe: 0, surely: 0, inside: 0, early: zero };
+    }
+    let surely = zero.is_less(lowest).or(highest.is_less(zero));
+    let (early, late) = times(corners, &edges, t_per_z);
+    let outside = late.is_less(t_min).or(t_max.is_less(early));
+    let inside = t_min.is_at_most(early).and(late.is_at_most(t_max)).and(surely);
+    let maybe = maybe.and_not(outside).bits();
+    Sifted { maybe, surely: surely.bits(), inside: inside.bits(), early }
+}
+
+/// Between which `t` the line of a ray crosses triangles, given their corners in ray space and
+/// their edge functions; from minus to plus infinity where rounding may have moved it across an edge.
+///
+/// With `u` half an ulp of one, `m` the largest x or y and `z` the largest z of the corners, corners
+/// are off by at most `u (2 m + 6 z)` and, with `s = m + 2 z`, edge functions by less than
+/// `e = 16 u s (m + 2 u s)`. Where all of them are larger than that, so are those that
+/// [`locate`](super::intersect::locate) works out, or they have the same signs at least; the weights of the corners, which
+/// are edge functions over their sum `d`, are together off by at most `12 e / d`, which moves the
+/// crossing by as much of half the range of z. Nothing is known where numbers come near to the ends
+/// of their range, where errors are not relative.
+#[inline(always)]
+fn times<V: Vector>(corners: &[[V; 3]; 3], edges: &[V; 3], t_per_z: V) -> (V, V) {
+    const HALF_ULP: f32 = 0.5 * f32::EPSILON;
+    const TINY: f32 = 1e-30;
+    const HUGE: f32 = 1e37;
+    let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = *corners;
+    let across = ax.magnitude().max(bx.magnitude()).max(cx.magnitude());
+    let across = across.max(ay.magnitude()).max(by.magnitude()).max(cy.magnitude());
+    let (low, high) = (az.min(bz).min(cz), az.max(bz).max(cz));
+    let along = low.magnitude().max(high.magnitude());
+    let size = t_per_z.all(2.0).fused(along, across);
+    let error =
+        t_per_z.all(16.0 * HALF_ULP) * size * t_per_z.all(2.0 * HALF_ULP).fused(size, across);
+    let [u, v, w] = *edges;
+    let one_over = t_per_z.all(1.0) / (u + v + w);
+    let z = (u * one_over).fused(az, (v * one_over).fused(bz, w * one_over * cz));
+    let off = t_per_z.all(6.0) * error * one_over.magnitude() * (high - low);
+    let off = t_per_z.all(16.0 * HALF_ULP).fused(along.max(t_per_z.all(TINY)), off);
+    let off = off.fused(t_per_z.magnitude(), t_per_z.all(16.0 * HALF_ULP * TINY));
+    let t = z * t_per_z;
+    let smallest = u.magnitude().min(v.magnitude()).min(w.magnitude());
+    let known = error
+        .max(t_per_z.all(TINY))
+        .is_less(smallest)
+        .and(t.magnitude().is_less(t_per_z.all(HUGE)));
+    let early = V::pick(known, t - off, t_per_z.all(f32::NEG_INFINITY));
+    let late = V::pick(known, t + off, t_per_z.all(f32::INFINITY));
+    (early, late)
+}

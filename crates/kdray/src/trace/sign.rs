@@ -1,0 +1,67 @@
+//! Inside or outside, and distances that say which.
+
+use super::Tracer;
+use crate::geometry::Ray;
+use crate::winding::Winding;
+
+/// How inside is told from outside.
+#[derive(Clone, Copy, Default)]
+pub enum Sign<'a> {
+    /// By [`Tracer::contains`], the parity of crossings: right for every closed mesh, however its
+    /// triangles are wound, and fast. A mesh with a hole leaks.
+    #[default]
+    Parity,
+    /// By [`Winding::contains`]: for meshes that are not closed but wound consistently. A hole is
+    /// bridged by where the mesh winds half a time around.
+    Winding(&'a Winding),
+}
+
+impl Sign<'_> {
+    pub(super) fn is_inside(self, tracer: &Tracer, point: [f32; 3]) -> bool {
+        match self {
+            Self::Parity => tracer.contains(point),
+            Self::Winding(winding) => winding.contains(point),
+        }
+    }
+
+    /// The distance of a point, negative inside.
+    pub(super) fn of(self, tracer: &Tracer, point: [f32; 3], distance: f32) -> f32 {
+        if self.is_inside(tracer, point) { -distance } else { distance }
+    }
+}
+
+impl Tracer {
+    /// Whether `point` is inside: whether a line from it to infinity crosses the surface an odd
+    /// number of times. Right for every closed mesh, because every crossing counts exactly once;
+    /// for a mesh that is not closed there is no right answer, and points on the surface may get
+    /// either.
+    #[must_use]
+    pub fn contains(&self, point: [f32; 3]) -> bool {
+        // Any direction would do; this one is not along anything that people model.
+        let ray = Ray::new(point, [0.439_504_65, 0.617_598_6, 0.652_231_5]);
+        self.count_hits(&ray) % 2 == 1
+    }
+
+    /// The distance of `point` from the surface, negative inside. `None` where
+    /// [`Tracer::closest_point`] finds nothing at any distance: without triangles, or for a point
+    /// that is not finite.
+    ///
+    /// ```
+    /// use kdray::{BuildOptions, Mesh, Sign, Tracer, Tree, Winding};
+    ///
+    /// // A tetrahedron without its floor.
+    /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    /// let mesh = Mesh::new(&corners, &[[0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+    /// let tracer = Tracer::new(&mesh, &Tree::build(&mesh, &BuildOptions::default())?);
+    /// let winding = Winding::new(&mesh);
+    /// let distance = |point| tracer.signed_distance(point, Sign::Winding(&winding));
+    /// assert_eq!(distance([0.125, 0.25, 0.25]), Some(-0.125));
+    /// assert_eq!(distance([-0.5, 0.25, 0.25]), Some(0.5));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn signed_distance(&self, point: [f32; 3], sign: Sign) -> Option<f32> {
+        let distance = self.closest_point(point, f32::INFINITY)?.distance;
+        Some(sign.of(self, point, distance))
+    }
+}

@@ -1,0 +1,222 @@
+//! Several rays at a time: in packets, or each a step in turn.
+//!
+//! A ray waits at almost every step, for memory and for the decision where to go: what it reads next
+//! depends on what it read last. Rays that go the same way wait together, as a packet. Where they
+//! go their own ways, the others are served while one waits.
+
+use super::hits::Counted;
+#[cfg(target_arch = "x86_64")]
+use super::packet;
+#[cfg(target_arch = "x86_64")]
+use super::simd::Avx2;
+use super::simd::{Plain, Simd};
+use super::stack::Stack;
+use super::traverse::{Trip, Visitor, traverse};
+use super::walk::Walk;
+use super::wide::Child;
+use crate::geometry::Ray;
+
+/// Rays on their way at the same time: enough to hide a read from memory, few enough for their
+/// state to stay in the nearest cache.
+const WALKS: usize = 8;
+
+/// Walks all `rays`. A ray's visitor comes from `begin`; `end` gets it, with the ray's index, when
+/// there is nothing more to visit. `begin` may pass over a ray.
+pub(super) fn trace<V: Visitor>(
+    trip: &Trip,
+    rays: &[Ray],
+    begin: impl Fn(&Ray) -> Option<V>,
+    end: impl FnMut(usize, V),
+) {
+    if go_the_same_way(rays) {
+        return in_packets(trip, rays, begin, end);
+    }
+    if !is_worth_turns(trip, rays) {
+        return one_by_one(trip, rays, begin, end);
+    }
+    #[cfg(target_arch = "x86_64")]
+    if let Some(proof) = trip.simd.avx2() {
+        // SAFETY: the processor has AVX2.
+        return unsafe { stream_avx2(proof.into(), trip, rays, begin, end) };
+    }
+    stream_with(Plain, trip, rays, begin, end);
+}
+
+/// The most rays of a packet.
+const PACKET: usize = 16;
+
+/// In packets where rays go together, one by one where not: each finds what it reads in the nearest
+/// cache, where the ray before left it.
+fn in_packets<V: Visitor>(
+    trip: &Trip,
+    rays: &[Ray],
+    begin: impl Fn(&Ray) -> Option<V>,
+    mut end: impl FnMut(usize, V),
+) {
+    let mut visitors = [const { None }; PACKET];
+    for (index, rays) in rays.chunks(PACKET).enumerate() {
+        for (visitor, ray) in visitors.iter_mut().zip(rays) {
+            *visitor = begin(ray);
+        }
+        sixteen(trip, rays, &mut visitors[..rays.len()]);
+        for (lane, visitor) in visitors.iter_mut().enumerate() {
+            if let Some(visitor) = visitor.take() {
+                end(PACKET * index + lane, visitor);
+            }
+        }
+    }
+}
+
+/// At most sixteen rays.
+#[inline(always)]
+fn sixteen<V: Visitor>(trip: &Trip, rays: &[Ray], visitors: &mut [Option<V>]) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(proof) = trip.simd.avx512()
+        && rays.len() == 16
+        // SAFETY: the processor has AVX-512.
+        && unsafe { packet::traverse_avx512(proof, trip, rays, visitors) }
+    {
+        return;
+    }
+    for (rays, visitors) in rays.chunks(8).zip(visitors.chunks_mut(8)) {
+        eight(trip, rays, visitors);
+    }
+}
+
+/// At most eight rays.
+#[inline(always)]
+fn eight<V: Visitor>(trip: &Trip, rays: &[Ray], visitors: &mut [Option<V>]) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(proof) = trip.simd.avx2()
+        && rays.len() == 8
+        // SAFETY: the processor has AVX2.
+        && unsafe { packet::traverse_avx2(proof, trip, rays, visitors) }
+    {
+        return;
+    }
+    for (ray, visitor) in rays.iter().zip(visitors) {
+        if let Some(visitor) = visitor {
+            traverse(trip, ray, visitor);
+        }
+    }
+}
+
+fn one_by_one<V: Visitor>(
+    trip: &Trip,
+    rays: &[Ray],
+    begin: impl Fn(&Ray) -> Option<V>,
+    mut end: impl FnMut(usize, V),
+) {
+    for (index, ray) in rays.iter().enumerate() {
+        if let Some(mut visitor) = begin(ray) {
+            traverse(trip, ray, &mut visitor);
+            end(index, visitor);
+        }
+    }
+}
+
+/// Whether rays that take turns gain more by that than taking turns costs: where they start far
+/// apart, so that each reads what is in no cache, or where they go a long way.
+fn is_worth_turns(trip: &Trip, rays: &[Ray]) -> bool {
+    const LONG: u32 = 8;
+    let is_far = |pair: &&[Ray]| {
+        let [a, b] = [pair[0].origin, pair[1].origin];
+        (0..3).any(|axis| (a[axis] - b[axis]).abs() > trip.reach / 32.0)
+    };
+    let pairs = rays.windows(2).step_by(16);
+    if 2 * pairs.clone().filter(is_far).count() >= pairs.count() {
+        return true;
+    }
+    // A few rays tell how long their ways are.
+    let sample = rays.iter().filter(|ray| ray.is_valid()).step_by(64);
+    let steps = |ray: &Ray| {
+        let mut counted = Counted::new(ray, |_| true);
+        traverse(trip, ray, &mut counted);
+        counted.counts.steps
+    };
+    let (count, sum) = sample.fold((0, 0), |(count, sum), ray| (count + 1, sum + steps(ray)));
+    sum >= LONG * count
+}
+
+/// Whether most rays have about the direction of the one before.
+fn go_the_same_way(rays: &[Ray]) -> bool {
+    let is_alike = |pair: &&[Ray]| {
+        let [a, b] = [pair[0].direction, pair[1].direction];
+        let dot = |p: [f32; 3], q: [f32; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+        // The angle between them is less than 18 degrees.
+        let cosine = dot(a, b);
+        cosine > 0.0 && cosine * cosine > 0.9 * dot(a, a) * dot(b, b)
+    };
+    // A sample will do: every 16th pair.
+    let pairs = rays.windows(2).step_by(16);
+    2 * pairs.clone().filter(is_alike).count() >= pairs.count()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
+fn stream_avx2<V: Visitor>(
+    simd: Avx2<V>,
+    trip: &Trip,
+    rays: &[Ray],
+    begin: impl Fn(&Ray) -> Option<V>,
+    end: impl FnMut(usize, V),
+) {
+    stream_with(simd, trip, rays, begin, end);
+}
+
+#[inline(always)]
+fn stream_with<V: Visitor>(
+    simd: impl Simd,
+    trip: &Trip,
+    rays: &[Ray],
+    begin: impl Fn(&Ray) -> Option<V>,
+    mut end: impl FnMut(usize, V),
+) {
+    let Trip { layout, reach, .. } = trip;
+    let mut waiting =
+        rays.iter().enumerate().filter_map(|(index, ray)| Some((index, ray, begin(ray)?)));
+    let mut stacks: Vec<Stack> = std::iter::repeat_with(Stack::new).take(WALKS).collect();
+    let mut walks = Vec::with_capacity(WALKS);
+    for (stack, (index, ray, visitor)) in stacks.iter_mut().zip(waiting.by_ref()) {
+        walks.push((index, visitor, Walk::new(simd, ray, *reach, stack), Child(0)));
+    }
+    while !walks.is_empty() {
+        let mut place = 0;
+        while place < walks.len() {
+            let (index, visitor, walk, child) = &mut walks[place];
+            *child = if child.block().is_some() {
+                walk.leaf(layout, *child, visitor)
+            } else {
+                walk.step(layout, *child, visitor)
+            };
+            if *child != Child::NONE {
+                place += 1;
+            } else if let Some((next, ray, begun)) = waiting.next() {
+                walk.restart(ray, *reach);
+                *child = Child(0);
+                end(std::mem::replace(index, next), std::mem::replace(visitor, begun));
+                place += 1;
+            } else {
+                let (index, visitor, ..) = walks.swap_remove(place);
+                end(index, visitor);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_are_compared_whatever_their_lengths() {
+        let ray = |x: f32, length: f32| Ray::new([0.0; 3], [length * x, 0.0, length]);
+        let alike: Vec<_> = (0..100).map(|i| ray(0.001 * i as f32, 1.0 + i as f32)).collect();
+        let apart: Vec<_> =
+            (0..100).map(|i| ray(if i % 2 == 0 { 1.0 } else { -1.0 }, 1.0)).collect();
+        assert!(go_the_same_way(&alike) && !go_the_same_way(&apart));
+        let opposite: Vec<_> =
+            (0..100).map(|i| ray(0.0, if i % 2 == 0 { 1.0 } else { -1.0 })).collect();
+        assert!(!go_the_same_way(&opposite));
+    }
+}

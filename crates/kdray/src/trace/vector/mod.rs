@@ -1,0 +1,110 @@
+//! Arithmetic on eight or sixteen numbers at once.
+//!
+//! A vector exists only where the processor has instructions for it: the first comes from a proof of
+//! that, all others from vectors. So arithmetic on vectors is safe.
+
+mod eight;
+mod sixteen;
+#[cfg(test)]
+mod tests;
+
+use std::ops::{Add, Div, Mul, Sub};
+
+use crate::geometry::Ray;
+
+pub(in crate::trace) use eight::Eight;
+pub(in crate::trace) use sixteen::Sixteen;
+
+/// A value for each axis. A closure would not do: it is compiled apart, for any processor.
+macro_rules! by_axis {
+    (|$axis:ident| $value:expr) => {
+        [
+            {
+                let $axis = 0;
+                $value
+            },
+            {
+                let $axis = 1;
+                $value
+            },
+            {
+                let $axis = 2;
+                $value
+            },
+        ]
+    };
+}
+pub(in crate::trace) use by_axis;
+
+/// The most lanes that a vector has.
+pub(in crate::trace) const MOST: usize = 16;
+
+/// A number a lane; those beyond the lanes of a vector are of no consequence.
+#[repr(align(64))]
+#[derive(Clone, Copy)]
+pub(in crate::trace) struct Numbers(pub(in crate::trace) [f32; MOST]);
+
+/// Numbers in single precision.
+pub(in crate::trace) trait Vector: Arithmetic<Number = f32> {
+    const LANES: usize;
+    type Proof: Copy;
+    type Precise: Precise<Rounded = Self>;
+
+    /// Rays, one a lane, as their eight numbers.
+    fn of_rays(proof: Self::Proof, rays: &[Ray]) -> [Self; 8];
+    fn of_numbers(proof: Self::Proof, numbers: &Numbers) -> Self;
+    fn numbers(self) -> Numbers;
+    fn magnitude(self) -> Self;
+    /// The magnitude of these with the signs of those.
+    fn with_signs_of(self, signs: Self) -> Self;
+    /// `self * factor + term`, rounded once.
+    fn fused(self, factor: Self, term: Self) -> Self;
+    /// By lane, one of these where the mask is set and one of those where not.
+    fn pick(mask: Self::Mask, these: Self, those: Self) -> Self;
+    fn precise(self) -> Self::Precise;
+}
+
+/// Numbers in double precision.
+pub(in crate::trace) trait Precise: Arithmetic<Number = f64> {
+    type Rounded;
+    fn rounded(self) -> Self::Rounded;
+}
+
+/// What both have.
+pub(in crate::trace) trait Arithmetic:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    type Number;
+    type Mask: Mask;
+    /// A number in every lane.
+    fn all(self, number: Self::Number) -> Self;
+    fn min(self, other: Self) -> Self;
+    fn max(self, other: Self) -> Self;
+    fn is_less(self, than: Self) -> Self::Mask;
+    fn is_at_most(self, most: Self) -> Self::Mask;
+}
+
+/// A truth a lane.
+pub(in crate::trace) trait Mask: Copy {
+    fn and(self, other: Self) -> Self;
+    fn or(self, other: Self) -> Self;
+    fn and_not(self, other: Self) -> Self;
+    /// A bit a lane, the first lowest.
+    fn bits(self) -> u32;
+}
+
+/// Operators, by the instruction of each.
+macro_rules! operators {
+    ($vector:ty, |$a:ident, $b:ident| $($operator:ident $name:ident $value:expr;)*) => {$(
+        impl $operator for $vector {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                let ($a, $b) = (self.0, other.0);
+                // SAFETY: a vector exists, so the processor has the instruction.
+                Self(unsafe { $value })
+            }
+        }
+    )*};
+}
+use operators;

@@ -1,0 +1,183 @@
+//! One ray on its way through the tree.
+
+use super::block::Block;
+use super::prepare::lesser;
+use super::simd::Simd;
+use super::stack::Stack;
+use super::traverse::{ENOUGH, Visitor};
+use super::wide::{Child, Layout};
+use crate::geometry::Ray;
+
+/// Visits a node or a leaf, and gives what comes next.
+///
+/// The parts of a ray are single variables here and not a structure, so that the compiler keeps
+/// those of the only ray in registers.
+#[inline(always)]
+fn visit<S: Simd>(
+    simd: S,
+    layout: &Layout,
+    (ray, slabs, shear): (&Ray, &S::Slabs, &mut Option<S::Shear>),
+    (child, until, stack): (Child, &mut f32, &mut Stack),
+    visitor: &mut impl Visitor,
+) -> Option<Child> {
+    let interval = [ray.t_min, *until];
+    if let Some(first) = child.block() {
+        visitor.leaf();
+        // Made when the first leaf is reached: many rays reach none.
+        let shear = shear.get_or_insert_with(|| simd.shear(ray));
+        // SAFETY: children of a layout are in it.
+        let blocks = unsafe { layout.blocks.get_unchecked(first..) };
+        *until = test_leaf(simd, blocks, shear, interval, visitor);
+        if *until == ENOUGH { None } else { stack.pop(*until) }
+    } else {
+        visitor.step();
+        // SAFETY: as above.
+        let wide = unsafe { layout.wides.get_unchecked(child.0 as usize) };
+        simd.nearest(wide, slabs, interval, stack).or_else(|| stack.pop(*until))
+    }
+}
+
+/// Visits a node or a leaf and everything below it. Gives the `t` up to which there is more to see.
+#[inline(always)]
+pub(super) fn visit_below<S: Simd>(
+    simd: S,
+    layout: &Layout,
+    (ray, reach): (&Ray, f32),
+    (child, mut until): (Child, f32),
+    visitor: &mut impl Visitor,
+) -> f32 {
+    let slabs = simd.slabs(ray, reach);
+    let (mut shear, mut stack) = (None, Stack::new());
+    let mut next = Some(child);
+    while let Some(child) = next {
+        let ray = (ray, &slabs, &mut shear);
+        next = visit(simd, layout, ray, (child, &mut until, &mut stack), visitor);
+    }
+    until
+}
+
+/// Where a ray is, and what it has still to visit.
+pub(super) struct Walk<'a, S: Simd> {
+    simd: S,
+    ray: &'a Ray,
+    slabs: S::Slabs,
+    shear: Option<S::Shear>,
+    stack: &'a mut Stack,
+    until: f32,
+}
+
+impl<'a, S: Simd> Walk<'a, S> {
+    /// A ray at the root.
+    #[inline(always)]
+    pub(super) fn new(simd: S, ray: &'a Ray, reach: f32, stack: &'a mut Stack) -> Self {
+        let slabs = simd.slabs(ray, reach);
+        stack.clear();
+        Self { simd, ray, slabs, shear: None, stack, until: ray.t_max }
+    }
+
+    /// Goes on with another ray, at the root.
+    #[inline(always)]
+    pub(super) fn restart(&mut self, ray: &'a Ray, reach: f32) {
+        self.stack.clear();
+        self.ray = ray;
+        self.slabs = self.simd.slabs(ray, reach);
+        self.shear = None;
+        self.until = ray.t_max;
+    }
+
+    /// Visits a node, and gives what comes next.
+    #[inline(always)]
+    pub(super) fn step(
+        &mut self,
+        layout: &Layout,
+        child: Child,
+        visitor: &mut impl Visitor,
+    ) -> Child {
+        visitor.step();
+        // SAFETY: children of a layout are in it.
+        let wide = unsafe { layout.wides.get_unchecked(child.0 as usize) };
+        let interval = [self.ray.t_min, self.until];
+        self.simd.push(wide, &self.slabs, interval, self.stack);
+        self.next(layout)
+    }
+
+    /// Visits a leaf, and gives what comes next.
+    #[inline(always)]
+    pub(super) fn leaf(
+        &mut self,
+        layout: &Layout,
+        child: Child,
+        visitor: &mut impl Visitor,
+    ) -> Child {
+        visitor.leaf();
+        let shear = self.shear.get_or_insert_with(|| self.simd.shear(self.ray));
+        let first = child.block().unwrap_or(0);
+        // SAFETY: as above.
+        let blocks = unsafe { layout.blocks.get_unchecked(first..) };
+        self.until = test_leaf(self.simd, blocks, shear, [self.ray.t_min, self.until], visitor);
+        self.next(layout)
+    }
+
+    /// What comes next, or [`Child::NONE`]; asks for its memory.
+    #[inline(always)]
+    fn next(&mut self, layout: &Layout) -> Child {
+        let next = self.stack.pop(self.until).unwrap_or(Child::NONE);
+        prefetch(layout, next);
+        next
+    }
+}
+
+/// Asks for the memory of a child.
+#[inline(always)]
+fn prefetch(layout: &Layout, child: Child) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        let (start, bytes) = layout.place(child);
+        for line in (0..bytes).step_by(64) {
+            // SAFETY: a prefetch reads nothing, wherever it points.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(line)) };
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (layout, child);
+}
+
+/// Shows the visitor the hits of a leaf; gives the `t` up to which there is more to see.
+#[inline(always)]
+fn test_leaf<S: Simd, V: Visitor>(
+    simd: S,
+    blocks: &[Block],
+    shear: &S::Shear,
+    [t_min, mut until]: [f32; 2],
+    visitor: &mut V,
+) -> f32 {
+    for block in blocks {
+        visitor.test();
+        let mut filtered = simd.filter(block, shear, [t_min, until]);
+        if V::ASKS_WHETHER {
+            for lane in filtered.inside() {
+                until = lesser(until, visitor.inside(block.index(lane)));
+                if until == ENOUGH {
+                    return ENOUGH;
+                }
+            }
+        }
+        while let Some(lane) = filtered.next(until) {
+            if visitor.knows(block.index(lane)) {
+                continue;
+            }
+            let Some(hit) = block.hit(lane, filtered.surely(lane), shear.as_ref()) else {
+                continue;
+            };
+            until = lesser(until, visitor.hit(hit));
+            if until == ENOUGH {
+                return ENOUGH;
+            }
+        }
+        if block.is_last() {
+            break;
+        }
+    }
+    until
+}
