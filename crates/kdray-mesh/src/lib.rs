@@ -30,6 +30,7 @@ mod obj;
 mod off;
 mod ply;
 mod polygon;
+mod sequence;
 mod stl;
 mod text;
 
@@ -37,3 +38,4 @@ pub use error::{LoadError, Place, Reason};
 pub use format::Format;
 pub use load::{load, read, read_with};
 pub use loaded::Loaded;
+pub use sequence::Sequence;

@@ -81,7 +81,7 @@ pub fn read_with(
 }
 
 /// At most `limit` bytes of the plain file `name` in `folder` or below.
-fn read_beside(folder: &Path, name: &str, limit: u64) -> io::Result<Vec<u8>> {
+pub(crate) fn read_beside(folder: &Path, name: &str, limit: u64) -> io::Result<Vec<u8>> {
     let below = |part| matches!(part, Component::Normal(_) | Component::CurDir);
     if !Path::new(name).components().all(below) {
         return Err(io::Error::other("it is outside the folder of the file"));

@@ -103,18 +103,28 @@ pub(super) struct Accessors<'a> {
 impl Accessors<'_> {
     /// The positions in an accessor.
     pub(super) fn positions(&self, index: usize) -> Result<Vec<[f64; 3]>, LoadError> {
-        let accessor = self.get(index, "VEC3")?;
+        self.numbers(index, "VEC3")
+    }
+
+    /// The numbers in an accessor of that shape, which has `N` components.
+    pub(super) fn numbers<const N: usize>(
+        &self,
+        index: usize,
+        shape: &str,
+    ) -> Result<Vec<[f64; N]>, LoadError> {
+        let accessor = self.get(index, shape)?;
         let component = component(accessor.component_type, index)?;
         if component == Component::U32 {
-            return Err(LoadError::malformed(place(index), "positions cannot be 32-bit integers"));
+            let reason = "numbers like these cannot be 32-bit integers";
+            return Err(LoadError::malformed(place(index), reason));
         }
-        let mut positions = self.values(accessor, index, component)?;
+        let mut numbers: Vec<[f64; N]> = self.values(accessor, index, component)?;
         if accessor.normalized {
-            for value in positions.as_flattened_mut() {
+            for value in numbers.as_flattened_mut() {
                 *value = component.normalise(*value);
             }
         }
-        Ok(positions)
+        Ok(numbers)
     }
 
     /// The indices in an accessor.

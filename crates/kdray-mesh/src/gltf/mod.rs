@@ -2,21 +2,26 @@
 //!
 //! Read are node transforms (in `f64`, nested), triangle lists, strips and fans, indexed or not, sparse
 //! accessors, quantised positions, and buffers in the GLB, in data URIs and in files. A mirrored node turns its
-//! triangles around, as the format asks. Skins and morph targets are left at rest, points and lines left
-//! out, both with a note; an extension that is required and could change the geometry is refused.
+//! triangles around, as the format asks. Skins and morph targets are left at rest,
+//! with a note, unless a time of an animation is asked for; points and lines are left out, with a note; an extension that is required and could change the geometry is refused.
 //!
 //! The JSON is read by `serde_json` into a schema of our own, because the `gltf` crate 1.4 panics on a POSITION
 //! accessor out of range, refuses accessors without a buffer view, and rounds transforms to `f32`.
 
 mod accessor;
+mod animation;
 mod buffers;
+mod pose;
 mod scene;
 mod schema;
 mod transform;
 
 use std::io;
 
+use self::accessor::Accessors;
+use self::animation::Player;
 use self::buffers::Buffers;
+use self::pose::Pose;
 use self::schema::Root;
 use crate::Loaded;
 use crate::error::{LoadError, Place};
@@ -26,12 +31,42 @@ pub(crate) type External<'a> = &'a dyn Fn(&str, u64) -> io::Result<Vec<u8>>;
 
 /// Reads a glTF or GLB file.
 pub(crate) fn read(bytes: &[u8], external: External) -> Result<Loaded, LoadError> {
+    with_accessors(bytes, external, |accessors| scene::flatten(accessors, None))
+}
+
+/// Reads a file as it is at `time` of an animation, in seconds: skins and morph targets move.
+pub(crate) fn read_at(
+    bytes: &[u8],
+    external: External,
+    animation: usize,
+    time: f64,
+) -> Result<Loaded, LoadError> {
+    with_accessors(bytes, external, |accessors| {
+        let pose = Pose::new(&Player::new(&accessors, animation)?, &accessors, time)?;
+        scene::flatten(accessors, Some(&pose))
+    })
+}
+
+/// How long an animation is, in seconds.
+pub(crate) fn duration(
+    bytes: &[u8],
+    external: External,
+    animation: usize,
+) -> Result<f64, LoadError> {
+    with_accessors(bytes, external, |accessors| Player::new(&accessors, animation)?.duration())
+}
+
+fn with_accessors<T>(
+    bytes: &[u8],
+    external: External,
+    read: impl FnOnce(Accessors) -> Result<T, LoadError>,
+) -> Result<T, LoadError> {
     let (json, chunk) =
         if bytes.starts_with(b"glTF") { buffers::split_glb(bytes)? } else { (bytes, None) };
     let root = parse(json)?;
     check_extensions(&root)?;
     let buffers = Buffers::new(&root, chunk, external, bytes.len());
-    scene::flatten(&root, &buffers)
+    read(Accessors { root: &root, buffers: &buffers })
 }
 
 fn parse(json: &[u8]) -> Result<Root, LoadError> {

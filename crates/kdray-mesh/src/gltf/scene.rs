@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::accessor::Accessors;
-use super::buffers::Buffers;
+use super::pose::{Deformation, Pose};
 use super::schema::{Primitive, Root};
 use super::transform::Transform;
 use crate::Loaded;
@@ -11,13 +11,15 @@ use crate::error::{LoadError, Place, Reason};
 use crate::loaded::check_vertex_count;
 
 /// The triangles of the default scene; without a scene, of all nodes; without nodes, of all meshes.
-pub(super) fn flatten(root: &Root, buffers: &Buffers) -> Result<Loaded, LoadError> {
-    let accessors = Accessors { root, buffers };
-    let mut flat = Flat { accessors, loaded: Loaded::default(), left_out: LeftOut::default() };
+/// With a pose, skins and morph targets are as it says.
+pub(super) fn flatten(accessors: Accessors, pose: Option<&Pose>) -> Result<Loaded, LoadError> {
+    let root = accessors.root;
+    let (loaded, left_out) = (Loaded::default(), LeftOut::default());
+    let mut flat = Flat { accessors, pose, loaded, left_out };
     check_transforms(root)?;
     if root.nodes.is_empty() {
         for mesh in 0..root.meshes.len() {
-            flat.mesh(mesh, &Transform::IDENTITY)?;
+            flat.mesh(mesh, &Transform::IDENTITY, None)?;
         }
     } else {
         flat.nodes(root_nodes(root)?)?;
@@ -85,6 +87,7 @@ impl LeftOut {
 /// The scene so far.
 struct Flat<'a> {
     accessors: Accessors<'a>,
+    pose: Option<&'a Pose>,
     loaded: Loaded,
     left_out: LeftOut,
 }
@@ -102,26 +105,55 @@ impl Flat<'_> {
             if std::mem::replace(&mut visited[index], true) {
                 return Err(node_error(index, "it is in the scene twice, or its own ancestor"));
             }
-            let local = Transform::of_node(node).map_err(|reason| node_error(index, reason))?;
+            let local = match self.pose {
+                Some(pose) => pose.locals[index],
+                None => Transform::of_node(node).map_err(|reason| node_error(index, reason))?,
+            };
             let transform = parent.after(&local);
             if let Some(mesh) = node.mesh {
-                self.left_out.skins += usize::from(node.skin.is_some());
-                self.mesh(mesh, &transform)?;
+                self.node_mesh(index, mesh, &transform)?;
             }
             stack.extend(node.children.iter().rev().map(|&child| (child, transform)));
         }
         Ok(())
     }
 
-    /// Adds a mesh. Primitives that share their positions share their vertices.
-    fn mesh(&mut self, index: usize, transform: &Transform) -> Result<(), LoadError> {
+    /// Adds the mesh of a node.
+    fn node_mesh(
+        &mut self,
+        index: usize,
+        mesh: usize,
+        transform: &Transform,
+    ) -> Result<(), LoadError> {
+        let node = &self.accessors.root.nodes[index];
+        let Some(pose) = self.pose else {
+            self.left_out.skins += usize::from(node.skin.is_some());
+            return self.mesh(mesh, transform, None);
+        };
+        let deformation = pose.deformation(index, node, &self.accessors)?;
+        let of_joints = deformation.is_skinned();
+        let transform = if of_joints { &Transform::IDENTITY } else { transform };
+        self.mesh(mesh, transform, Some(&deformation))
+    }
+
+    /// Adds a mesh. Primitives that share their positions share their vertices, unless they are
+    /// deformed.
+    fn mesh(
+        &mut self,
+        index: usize,
+        transform: &Transform,
+        deformation: Option<&Deformation>,
+    ) -> Result<(), LoadError> {
         let place = || Place::item(format!("mesh {index}"));
         let missing = || LoadError::malformed(place(), "there is no such mesh");
         let mesh = self.accessors.root.meshes.get(index).ok_or_else(missing)?;
         let mut known = HashMap::new();
         for (number, primitive) in mesh.primitives.iter().enumerate() {
             let item = format!("mesh {index}, primitive {number}");
-            self.primitive(primitive, transform, &item, &mut known)?;
+            if deformation.is_some() {
+                known.clear();
+            }
+            self.primitive(primitive, (transform, deformation), &item, &mut known)?;
         }
         Ok(())
     }
@@ -129,7 +161,7 @@ impl Flat<'_> {
     fn primitive(
         &mut self,
         primitive: &Primitive,
-        transform: &Transform,
+        (transform, deformation): (&Transform, Option<&Deformation>),
         item: &str,
         known: &mut HashMap<usize, Vertices>,
     ) -> Result<(), LoadError> {
@@ -144,13 +176,20 @@ impl Flat<'_> {
                 return Err(LoadError::malformed(place(), format!("{mode} is not a mode")));
             }
         }
-        self.left_out.morphs += usize::from(!primitive.targets.is_empty());
+        let is_at_rest = deformation.is_none() && !primitive.targets.is_empty();
+        self.left_out.morphs += usize::from(is_at_rest);
         let Some(position) = primitive.attributes.position else {
             return Err(LoadError::malformed(place(), "it has no positions"));
         };
         let vertices = match known.get(&position) {
             Some(vertices) => *vertices,
-            None => *known.entry(position).or_insert(self.vertices(position, transform)?),
+            None => {
+                let mut positions = self.accessors.positions(position)?;
+                if let Some(deformation) = deformation {
+                    deformation.apply(&mut positions, primitive, &self.accessors)?;
+                }
+                *known.entry(position).or_insert(self.vertices(&positions, transform)?)
+            }
         };
         let corners = match primitive.indices {
             Some(indices) => self.accessors.indices(indices)?,
@@ -159,9 +198,12 @@ impl Flat<'_> {
         self.triangles(primitive.mode, &corners, vertices, transform.mirrors(), item)
     }
 
-    /// Adds the vertices of an accessor, moved to their place.
-    fn vertices(&mut self, accessor: usize, transform: &Transform) -> Result<Vertices, LoadError> {
-        let positions = self.accessors.positions(accessor)?;
+    /// Adds vertices, moved to their place.
+    fn vertices(
+        &mut self,
+        positions: &[[f64; 3]],
+        transform: &Transform,
+    ) -> Result<Vertices, LoadError> {
         let first = self.loaded.positions.len();
         check_vertex_count(first + positions.len())?;
         self.loaded.positions.extend(positions.iter().map(|&position| transform.apply(position)));

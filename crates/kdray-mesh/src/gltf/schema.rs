@@ -16,6 +16,10 @@ pub(super) struct Root {
     #[serde(default)]
     pub(super) meshes: Vec<Mesh>,
     #[serde(default)]
+    pub(super) skins: Vec<Skin>,
+    #[serde(default)]
+    pub(super) animations: Vec<Animation>,
+    #[serde(default)]
     pub(super) accessors: Vec<Accessor>,
     #[serde(default)]
     pub(super) buffer_views: Vec<BufferView>,
@@ -44,11 +48,14 @@ pub(super) struct Node {
     pub(super) translation: Option<[f64; 3]>,
     pub(super) rotation: Option<[f64; 4]>,
     pub(super) scale: Option<[f64; 3]>,
+    pub(super) weights: Option<Vec<f64>>,
 }
 
 #[derive(Deserialize)]
 pub(super) struct Mesh {
     pub(super) primitives: Vec<Primitive>,
+    #[serde(default)]
+    pub(super) weights: Vec<f64>,
 }
 
 #[derive(Deserialize)]
@@ -58,7 +65,7 @@ pub(super) struct Primitive {
     #[serde(default = "Primitive::triangles")]
     pub(super) mode: u32,
     #[serde(default)]
-    pub(super) targets: Vec<serde::de::IgnoredAny>,
+    pub(super) targets: Vec<Attributes>,
 }
 
 impl Primitive {
@@ -71,6 +78,56 @@ impl Primitive {
 pub(super) struct Attributes {
     #[serde(rename = "POSITION")]
     pub(super) position: Option<usize>,
+    #[serde(rename = "JOINTS_0")]
+    pub(super) joints: Option<usize>,
+    #[serde(rename = "WEIGHTS_0")]
+    pub(super) weights: Option<usize>,
+    #[serde(rename = "JOINTS_1")]
+    pub(super) more_joints: Option<usize>,
+    #[serde(rename = "WEIGHTS_1")]
+    pub(super) more_weights: Option<usize>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Skin {
+    pub(super) joints: Vec<usize>,
+    pub(super) inverse_bind_matrices: Option<usize>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Animation {
+    pub(super) channels: Vec<Channel>,
+    pub(super) samplers: Vec<Sampler>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Channel {
+    pub(super) sampler: usize,
+    pub(super) target: Target,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Target {
+    pub(super) node: Option<usize>,
+    pub(super) path: String,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Sampler {
+    pub(super) input: usize,
+    pub(super) output: usize,
+    #[serde(default)]
+    pub(super) interpolation: Interpolation,
+}
+
+#[derive(Clone, Copy, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub(super) enum Interpolation {
+    #[default]
+    Linear,
+    Step,
+    CubicSpline,
 }
 
 #[derive(Deserialize)]

@@ -9,6 +9,24 @@ pub(super) struct Transform {
     offset: [f64; 3],
 }
 
+/// What a node's transform is made of, if it is no matrix.
+#[derive(Clone, Copy)]
+pub(super) struct Parts {
+    pub(super) translation: [f64; 3],
+    pub(super) rotation: [f64; 4],
+    pub(super) scale: [f64; 3],
+}
+
+impl Parts {
+    pub(super) fn of_node(node: &Node) -> Self {
+        Self {
+            translation: node.translation.unwrap_or([0.0; 3]),
+            rotation: node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]),
+            scale: node.scale.unwrap_or([1.0; 3]),
+        }
+    }
+}
+
 impl Transform {
     pub(super) const IDENTITY: Self =
         Self { columns: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], offset: [0.0; 3] };
@@ -17,14 +35,14 @@ impl Transform {
     pub(super) fn of_node(node: &Node) -> Result<Self, &'static str> {
         let transform = match node.matrix {
             Some(matrix) => Self::from_matrix(matrix)?,
-            None => Self::from_parts(node)?,
+            None => Self::from_parts(&Parts::of_node(node))?,
         };
         let is_finite = transform.columns.as_flattened().iter().all(|value| value.is_finite())
             && transform.offset.iter().all(|value| value.is_finite());
         if is_finite { Ok(transform) } else { Err("its transform is not finite") }
     }
 
-    fn from_matrix(m: [f64; 16]) -> Result<Self, &'static str> {
+    pub(super) fn from_matrix(m: [f64; 16]) -> Result<Self, &'static str> {
         if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
             return Err("its matrix is not affine");
         }
@@ -32,12 +50,13 @@ impl Transform {
         Ok(Self { columns: [column(0), column(1), column(2)], offset: column(3) })
     }
 
-    fn from_parts(node: &Node) -> Result<Self, &'static str> {
-        let mut columns = rotation(node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]))?;
-        for (column, scale) in columns.iter_mut().zip(node.scale.unwrap_or([1.0; 3])) {
+    /// Scales, turns and moves, in this order.
+    pub(super) fn from_parts(parts: &Parts) -> Result<Self, &'static str> {
+        let mut columns = rotation(parts.rotation)?;
+        for (column, scale) in columns.iter_mut().zip(parts.scale) {
             *column = column.map(|value| value * scale);
         }
-        Ok(Self { columns, offset: node.translation.unwrap_or([0.0; 3]) })
+        Ok(Self { columns, offset: parts.translation })
     }
 
     /// This transform after `inner`.
