@@ -78,6 +78,17 @@ impl Camera {
         Ray::new(self.eye, lens.direction(x, y).to_array())
     }
 
+    /// Where a point is on the picture, both coordinates in -1..=1 if it is in view, and its distance
+    /// along the way the camera looks; `None` if it is not in front of the camera.
+    #[must_use]
+    pub fn project(&self, point: [f32; 3], aspect: f32) -> Option<([f32; 2], f32)> {
+        let lens = Lens::new(self, aspect);
+        let offset = Vec3::from(point) - Vec3::from(self.eye);
+        let depth = offset.dot(lens.forward);
+        let place = |axis: Vec3| offset.dot(axis) / axis.length_squared() / depth;
+        (depth > 0.0).then(|| ([lens.right, lens.up].map(place), depth))
+    }
+
     /// Up, of unit length.
     pub(crate) fn vertical(&self) -> Vec3 {
         vertical(self.up)
@@ -151,11 +162,7 @@ mod tests {
 
     /// Where a point is on the picture of a square camera.
     fn projected(camera: &Camera, point: Vec3) -> [f32; 2] {
-        let lens = Lens::new(camera, 1.5);
-        let offset = point - Vec3::from(camera.eye);
-        let depth = offset.dot(lens.forward);
-        assert!(depth > 0.0, "behind the eye");
-        [lens.right, lens.up].map(|axis| offset.dot(axis) / axis.length_squared() / depth)
+        camera.project(point.to_array(), 1.5).expect("before the eye").0
     }
 
     #[test]
@@ -204,6 +211,9 @@ mod tests {
             let toward = (corner - Vec3::from(camera.eye)).normalize();
             assert!(Vec3::from(ray.direction).distance(toward) < 1e-5);
         }
+        assert_eq!(camera.project(camera.eye, 1.5), None);
+        let behind = [0, 1, 2].map(|axis| 2.0 * camera.eye[axis] - camera.target[axis]);
+        assert_eq!(camera.project(behind, 1.5), None);
         assert!(camera.ray(0.0, 1.0, 1.5).direction[1] > camera.ray(0.0, -1.0, 1.5).direction[1]);
     }
 }

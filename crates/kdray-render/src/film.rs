@@ -7,10 +7,11 @@ use kdray::Ray;
 use rayon::prelude::*;
 
 use crate::camera::Lens;
+use crate::caster::Source;
 use crate::probe::Probe;
 use crate::sampler::Sampler;
 use crate::scene::Scene;
-use crate::{Camera, Cancelled, RenderOptions};
+use crate::{Camera, Cancelled, RenderOptions, waves};
 
 /// Pixels along a side of the squares that threads take at a time.
 const TILE: u32 = 16;
@@ -56,7 +57,8 @@ pub(crate) struct Film {
 }
 
 impl Film {
-    /// Shades every sample of every pixel, tile by tile on the threads of the current `rayon` pool.
+    /// Shades every sample of every pixel, tile by tile on the threads of the current `rayon` pool;
+    /// wave by wave where rays are traced many at a time.
     pub(crate) fn expose<S>(
         scene: &Scene,
         camera: &Camera,
@@ -66,15 +68,18 @@ impl Film {
     where
         S: Fn(&mut Probe, &Ray, &mut Sampler) -> Sample + Sync,
     {
-        let aspect = options.aspect();
-        let view = View { camera, lens: Lens::new(camera, aspect), options };
+        let view = View { camera, lens: Lens::new(camera, options.aspect()), options };
+        let tracer = match &scene.source {
+            Source::Tracer(tracer) => *tracer,
+            Source::Caster(casting) => return waves::expose(scene, casting, &view, &shade),
+        };
         let across = options.width.div_ceil(TILE);
         let tiles = (across * options.height.div_ceil(TILE)) as usize;
         let done = AtomicUsize::new(0);
         let expose_tile = |tile: usize| {
             options.check_cancelled()?;
             let corner = [tile as u32 % across * TILE, tile as u32 / across * TILE];
-            let exposed = Tile::expose(&view, corner, &mut Probe::new(scene), &shade);
+            let exposed = Tile::expose(&view, corner, &mut Probe::new(scene, tracer), &shade);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             if let Some(progress) = options.progress {
                 progress(done as f32 / tiles as f32);
@@ -104,11 +109,24 @@ impl Film {
     }
 }
 
-/// What all tiles look through.
-struct View<'a> {
+/// What all pixels look through.
+pub(crate) struct View<'a> {
     camera: &'a Camera,
     lens: Lens,
-    options: &'a RenderOptions<'a>,
+    pub(crate) options: &'a RenderOptions<'a>,
+}
+
+impl View<'_> {
+    /// The camera ray of a sample, and the random numbers that are left for it.
+    pub(crate) fn sample(&self, [x, y]: [u32; 2], sample: u32) -> (Ray, Sampler) {
+        let RenderOptions { width, height, .. } = *self.options;
+        let mut sampler = Sampler::new([x, y], sample, self.options.samples());
+        let [dx, dy] = sampler.next();
+        let right = 2.0 * (x as f32 + dx) / width as f32 - 1.0;
+        let up = 1.0 - 2.0 * (y as f32 + dy) / height as f32;
+        let ray = Ray::new(self.camera.eye, self.lens.direction(right, up).to_array());
+        (ray, sampler)
+    }
 }
 
 /// A square of the film.
@@ -130,11 +148,7 @@ impl Tile {
         let columns = corner[0]..(corner[0] + TILE).min(width);
         let mut expose = |x, y| {
             let samples = (0..samples).map(|sample| {
-                let mut sampler = Sampler::new([x, y], sample, samples);
-                let [dx, dy] = sampler.next();
-                let right = 2.0 * (x as f32 + dx) / width as f32 - 1.0;
-                let up = 1.0 - 2.0 * (y as f32 + dy) / height as f32;
-                let ray = Ray::new(view.camera.eye, view.lens.direction(right, up).to_array());
+                let (ray, mut sampler) = view.sample([x, y], sample);
                 shade(probe, &ray, &mut sampler)
             });
             Pixel::mean(samples)
@@ -154,7 +168,7 @@ impl Surface {
 }
 
 impl Pixel {
-    fn mean(samples: impl ExactSizeIterator<Item = Sample>) -> Self {
+    pub(crate) fn mean(samples: impl ExactSizeIterator<Item = Sample>) -> Self {
         let count = samples.len() as f32;
         let mut pixel = Self::default();
         let mut first: Option<Surface> = None;

@@ -1,26 +1,22 @@
 //! A colour bar with numbers, for heat maps.
 
-use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
-
-use crate::Picture;
 use crate::shade::heat;
+use crate::{Picture, text};
 
-const LETTER: RasterHeight = RasterHeight::Size16;
 const MARGIN: u32 = 16;
 const BAR: [u32; 2] = [256, 12];
-const TEXT: [u8; 3] = [235, 235, 235];
 
 /// Draws a bar from 0 to `most` into the lower left corner, under its title. Pictures without room
 /// for it stay as they are.
 pub(crate) fn draw(picture: &mut Picture, most: f32, title: &str) {
-    let line = LETTER.val() as u32;
+    let line = text::LINE;
     let height = BAR[1] + 2 * line + 8;
     let [room_x, room_y] = [BAR[0] + 4 * MARGIN, height + 2 * MARGIN];
     if picture.width < room_x || picture.height < room_y {
         return;
     }
     let top = picture.height - MARGIN - height;
-    write(picture, [MARGIN, top], title);
+    picture.write([MARGIN, top], title);
     for (x, y) in (0..BAR[0]).flat_map(|x| (0..BAR[1]).map(move |y| (x, y))) {
         if let Some(pixel) = picture.pixel_mut(MARGIN + x, top + line + 4 + y) {
             *pixel = heat((x as f32 + 0.5) / BAR[0] as f32);
@@ -29,31 +25,8 @@ pub(crate) fn draw(picture: &mut Picture, most: f32, title: &str) {
     let numbers = top + line + BAR[1] + 8;
     for (place, value) in [(0, 0.0), (BAR[0] / 2, 0.5 * most), (BAR[0], most)] {
         let text = format!("{value}");
-        let width = (text.len() * get_raster_width(FontWeight::Regular, LETTER)) as u32;
-        write(picture, [(MARGIN + place).saturating_sub(width / 2), numbers], &text);
-    }
-}
-
-/// Writes a line of text, its upper left corner at `x`, `y`.
-fn write(picture: &mut Picture, [x, y]: [u32; 2], text: &str) {
-    let advance = get_raster_width(FontWeight::Regular, LETTER) as u32;
-    let letters = text.chars().filter_map(|c| get_raster(c, FontWeight::Regular, LETTER));
-    for (index, letter) in (0..).zip(letters) {
-        for (row, line) in (0..).zip(letter.rows()) {
-            for (column, cover) in (0..).zip(line) {
-                if let Some(pixel) = picture.pixel_mut(x + index * advance + column, y + row) {
-                    blend(pixel, *cover);
-                }
-            }
-        }
-    }
-}
-
-fn blend(pixel: &mut [u8; 3], cover: u8) {
-    let cover = u32::from(cover);
-    for (channel, ink) in pixel.iter_mut().zip(TEXT) {
-        let mixed = u32::from(*channel) * (255 - cover) + u32::from(ink) * cover;
-        *channel = ((mixed + 127) / 255) as u8;
+        let width = text.len() as u32 * text::letter_width();
+        picture.write([(MARGIN + place).saturating_sub(width / 2), numbers], &text);
     }
 }
 

@@ -18,6 +18,7 @@
 //! ```
 
 mod camera;
+mod caster;
 mod components;
 mod corners;
 mod denoise;
@@ -33,12 +34,15 @@ mod sampler;
 mod scene;
 mod shade;
 mod sky;
+mod text;
 mod tone;
 mod warp;
+mod waves;
 mod weld;
 
 pub use camera::Camera;
+pub use caster::{Caster, CasterError, RenderError};
 pub use options::{Cancelled, RenderOptions, Shading};
 pub use picture::Picture;
-pub use shade::render;
+pub use shade::{render, render_with};
 pub use sky::{Sky, Sun};

@@ -1,8 +1,9 @@
 //! The finished picture.
 
+use std::io::Cursor;
 use std::path::Path;
 
-use image::{ImageError, RgbImage};
+use image::{ImageError, ImageFormat, RgbImage};
 
 use crate::film::{Film, Pixel};
 
@@ -39,11 +40,26 @@ impl Picture {
     ///
     /// The file cannot be written.
     pub fn save_png(&self, path: impl AsRef<Path>) -> Result<(), ImageError> {
+        self.image().save_with_format(path, ImageFormat::Png)
+    }
+
+    /// The bytes of a PNG file.
+    ///
+    /// # Errors
+    ///
+    /// The picture cannot be encoded, which happens if it has no pixels.
+    pub fn to_png(&self) -> Result<Vec<u8>, ImageError> {
+        let mut bytes = Cursor::new(Vec::new());
+        self.image().write_to(&mut bytes, ImageFormat::Png)?;
+        Ok(bytes.into_inner())
+    }
+
+    fn image(&self) -> RgbImage {
         let mut image = RgbImage::new(self.width, self.height);
         for (target, source) in image.pixels_mut().zip(&self.pixels) {
             target.0 = *source;
         }
-        image.save_with_format(path, image::ImageFormat::Png)
+        image
     }
 
     /// The pixel in column `x` of row `y`.
@@ -66,6 +82,7 @@ mod tests {
         let file = tempfile::NamedTempFile::new().expect("a temporary file");
         picture.save_png(file.path()).expect("it can be written");
         let bytes = std::fs::read(file.path()).expect("it was written");
+        assert_eq!(picture.to_png().expect("it can be encoded"), bytes);
         let image = image::load_from_memory(&bytes).expect("a PNG").into_rgb8();
         assert_eq!(image.dimensions(), (3, 2));
         assert_eq!(image.get_pixel(2, 1).0, [5, 105, 200]);

@@ -1,8 +1,9 @@
 //! The mesh made ready to be looked at.
 
 use glam::Vec3;
-use kdray::{Hit, Mesh, Ray, Tracer};
+use kdray::{Hit, Mesh, Ray};
 
+use crate::caster::Source;
 use crate::components::Components;
 use crate::corners::{Corners, flat_normal};
 use crate::ground::Ground;
@@ -13,7 +14,7 @@ use crate::{Camera, RenderOptions, Shading};
 
 /// What rays can meet, and how it looks.
 pub(crate) struct Scene<'a> {
-    pub(crate) tracer: &'a Tracer,
+    pub(crate) source: Source<'a>,
     mesh: &'a Mesh,
     corners: Corners,
     palette: Palette,
@@ -24,7 +25,7 @@ pub(crate) struct Scene<'a> {
 
 impl<'a> Scene<'a> {
     pub(crate) fn new(
-        tracer: &'a Tracer,
+        source: Source<'a>,
         mesh: &'a Mesh,
         camera: &Camera,
         options: &RenderOptions,
@@ -42,7 +43,7 @@ impl<'a> Scene<'a> {
             }
         }
         let ground = if options.ground && is_lit { Ground::under(mesh, up) } else { None };
-        Self { tracer, mesh, corners, palette, ground, diagonal }
+        Self { source, mesh, corners, palette, ground, diagonal }
     }
 
     /// Where the ray meets the ground.

@@ -3,9 +3,12 @@
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-use kdray::{BuildOptions, Mesh, Tracer, Tree};
+use kdray::{BuildOptions, Hit, Mesh, Ray, Tracer, Tree};
 use kdray_mesh::{Loaded, generate};
-use kdray_render::{Camera, Cancelled, Picture, RenderOptions, Shading, Sky, render};
+use kdray_render::{
+    Camera, Cancelled, Caster, CasterError, Picture, RenderError, RenderOptions, Shading, Sky,
+    render, render_with,
+};
 
 fn small(shading: Shading) -> RenderOptions<'static> {
     RenderOptions { width: 96, height: 72, shading, ..RenderOptions::default() }
@@ -157,4 +160,60 @@ fn pictures_can_be_watched_and_cancelled() {
     let cancel = AtomicBool::new(true);
     let options = RenderOptions { cancel: Some(&cancel), ..small(Shading::Path) };
     assert_eq!(picture(&mesh, &options), Err(Cancelled));
+}
+
+/// The tracer, many rays at a time. It fails after so many calls.
+struct Waves(Tracer, Mutex<usize>);
+
+impl Waves {
+    fn count(&self) -> Result<(), CasterError> {
+        let mut left = self.1.lock().expect("nobody panics");
+        *left = left.checked_sub(1).ok_or("the cable was cut")?;
+        Ok(())
+    }
+}
+
+impl Caster for Waves {
+    fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) -> Result<(), CasterError> {
+        self.0.closest_hits(rays, hits);
+        self.count()
+    }
+
+    fn any_hits(&self, rays: &[Ray], found: &mut [bool]) -> Result<(), CasterError> {
+        self.0.any_hits(rays, found);
+        self.count()
+    }
+}
+
+#[test]
+fn rays_that_are_traced_many_at_a_time_make_the_same_picture() {
+    let mesh = mesh(&generate::torus_knot([2, 3], 200, 24));
+    let tree = Tree::build(&mesh, &BuildOptions::default()).expect("nothing limits the build");
+    for shading in [Shading::Normals, Shading::Ao, Shading::Path] {
+        // More than one wave, whose last one is shorter.
+        let options = RenderOptions { samples: Some(10), ..small(shading) };
+        let camera = Camera::framing_mesh(&mesh, Camera::Y_UP, options.aspect());
+        let expected = picture(&mesh, &options).expect("not cancelled");
+        let caster = Waves(Tracer::new(&mesh, &tree), Mutex::new(usize::MAX));
+        let found = render_with(&caster, &mesh, &camera, &options).expect("nothing fails");
+        assert!(found.pixels == expected.pixels, "{shading:?}");
+        assert_eq!((found.rays, found.hits), (expected.rays, expected.hits), "{shading:?}");
+    }
+}
+
+#[test]
+fn casters_fail_and_are_cancelled() {
+    let mesh = mesh(&generate::cube());
+    let tree = Tree::build(&mesh, &BuildOptions::default()).expect("nothing limits the build");
+    let camera = Camera::framing_mesh(&mesh, Camera::Y_UP, 1.0);
+    let run = |calls, options: &RenderOptions| {
+        let caster = Waves(Tracer::new(&mesh, &tree), Mutex::new(calls));
+        render_with(&caster, &mesh, &camera, options).map(|picture| picture.rays)
+    };
+    let error = run(3, &small(Shading::Path)).unwrap_err();
+    assert_eq!(error.to_string(), "the cable was cut");
+    assert!(run(9, &small(Shading::Cost)).is_err(), "costs are those of the CPU");
+    let cancel = AtomicBool::new(true);
+    let cancelled = RenderOptions { cancel: Some(&cancel), ..small(Shading::Ao) };
+    assert!(matches!(run(9, &cancelled), Err(RenderError::Cancelled(_))));
 }
