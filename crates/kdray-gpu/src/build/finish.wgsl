@@ -1,0 +1,105 @@
+// Whole subtrees of nodes with few references, each by one team, depth first.
+//
+// Twin: `finish.rs`. A finished subtree is a piece of the tree, packed: see `Array::Finished`.
+
+//#import offer
+//#import advance
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage> positions: array<u32>;
+@group(0) @binding(2) var<storage> triangles: array<u32>;
+@group(0) @binding(3) var<storage> references: References;
+@group(0) @binding(4) var<storage> events: array<Event>;
+@group(0) @binding(5) var<storage> nodes: array<Node>;
+@group(0) @binding(6) var<storage, read_write> inner: array<u32>;
+@group(0) @binding(7) var<storage, read_write> pieces: array<u32>;
+
+@compute @workgroup_size(TEAM)
+fn finish(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let slot = team(group, groups);
+    if slot < params.count {
+        begin(slot, local);
+    }
+    for (var step = 0u; step < 4u * SMALL; step++) {
+        if workgroupUniformLoad(&state) != BUSY {
+            break;
+        }
+        let task = current;
+        if local == 0u {
+            clear_masks();
+        }
+        offers[local] = offer(task, local);
+        workgroupBarrier();
+        let plan = choice(task);
+        if plan.what == LEAF {
+            put_references(task, local);
+        } else {
+            route_parts(task, plan, local);
+        }
+        workgroupBarrier();
+        if plan.what != LEAF {
+            clip_straddlers(task, plan, local);
+        }
+        workgroupBarrier();
+        if plan.what != LEAF {
+            share_parts(task, local);
+        }
+        if local == 0u {
+            advance(task, plan);
+        }
+    }
+    if slot < params.count && local == 0u {
+        end(slot);
+    }
+}
+
+// Loads the parts of a node, if there are few and it may be cut.
+fn begin(slot: u32, local: u32) {
+    let node = nodes[slot];
+    let lower = vec3u(node.lower[0], node.lower[1], node.lower[2]);
+    let upper = vec3u(node.upper[0], node.upper[1], node.upper[2]);
+    if local == 0u {
+        state = IDLE;
+    }
+    let prices = prices_of(lower, upper, 0u);
+    if node.count > SMALL || !is_open(prices, node.count) {
+        return;
+    }
+    for (var index = local; index < 2u * node.count; index += TEAM) {
+        for (var axis = 0u; axis < 3u; axis++) {
+            let event = events[axis * params.events + 2u * node.first + index];
+            let part = (event.what >> 2u) - node.first;
+            if (event.what & 1u) == 1u {
+                part_lower[part][axis] = event.position;
+            } else {
+                part_upper[part][axis] = event.position;
+            }
+        }
+    }
+    for (var part = local; part < node.count; part += TEAM) {
+        part_triangle[part] = references.list[node.first + part].triangle;
+    }
+    if local == 0u {
+        piece = Piece(PIECE * node.first, node.count, 0u, 0u);
+        waiting_count = 0u;
+        current = Task(lower, 0u, upper, node.count, NONE, params.depth_left);
+        state = BUSY;
+    }
+}
+
+// Says how large the piece is.
+fn end(slot: u32) {
+    var words = 0u;
+    if state == DONE && piece.nodes == 1u {
+        words = NONE;
+    } else if state == DONE {
+        words = 2u + 2u * piece.nodes + piece.references;
+        pieces[piece.start] = piece.nodes;
+        pieces[piece.start + 1u] = piece.references;
+    }
+    inner[params.nodes + slot] = words;
+}

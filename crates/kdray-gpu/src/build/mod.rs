@@ -1,0 +1,211 @@
+//! The build on a device: kernels over flat arrays, level by level \[WZL11].
+//!
+//! ARCHITECTURE.md, "The build on the GPU", draws a level. Each kernel is a WGSL file and a Rust
+//! file of the same name, with its place in the build and its twin: what it does, on the CPU.
+
+mod arrays;
+mod assign;
+mod batches;
+mod bear;
+mod choose;
+mod clip;
+mod cpu;
+mod data;
+mod decide;
+mod driver;
+mod executor;
+mod finish;
+mod first;
+mod flats;
+mod gather;
+mod gpu;
+mod join;
+mod keep;
+mod kernel;
+#[cfg(test)]
+mod lockstep;
+mod mark;
+mod merge;
+mod name;
+mod offer;
+mod offset;
+mod pack;
+mod packing;
+mod pair;
+mod part;
+mod piece;
+mod place;
+mod price;
+mod pricing;
+mod rank;
+mod rebuilder;
+mod renew;
+mod report;
+mod root;
+mod route;
+mod spare;
+mod starts;
+mod stow;
+mod subtree;
+mod tally;
+mod weigh;
+
+use kdray::{BuildError, BuildOptions, Mesh, Tree};
+
+#[cfg(test)]
+pub(crate) use kernel::{Params, Worker};
+#[cfg(test)]
+pub(crate) use piece::PIECE;
+pub use rebuilder::Rebuilder;
+pub use report::{BuildReport, LevelReport};
+#[cfg(test)]
+pub(crate) use subtree::{ROOM, SMALL, WAITING};
+
+use crate::device::Device;
+use crate::error::GpuError;
+
+/// The parts that the kernels of the build share.
+pub(crate) const PARTS: &[(&str, &str)] = &[
+    ("advance", include_str!("advance.wgsl")),
+    ("bases", include_str!("bases.wgsl")),
+    ("kept", include_str!("kept.wgsl")),
+    ("level", include_str!("level.wgsl")),
+    ("offer", include_str!("offer.wgsl")),
+    ("piece", include_str!("piece.wgsl")),
+    ("polygon", include_str!("polygon.wgsl")),
+    ("prices", include_str!("prices.wgsl")),
+    ("route", include_str!("route.wgsl")),
+    ("share", include_str!("share.wgsl")),
+    ("span", include_str!("span.wgsl")),
+    ("subtree", include_str!("subtree.wgsl")),
+    ("sweep", include_str!("sweep.wgsl")),
+    ("team", include_str!("team.wgsl")),
+    ("triangle", include_str!("triangle.wgsl")),
+];
+
+/// The kernels of the build, in the order of their first use.
+pub(crate) const KERNELS: &[&kernel::Kernel] = &[
+    &flats::FLATS,
+    &root::ROOT,
+    &join::JOIN,
+    &finish::FINISH,
+    &starts::STARTS,
+    &price::PRICE,
+    &choose::CHOOSE,
+    &decide::DECIDE,
+    &mark::MARK,
+    &assign::ASSIGN,
+    &pair::PAIR,
+    &stow::STOW,
+    &gather::GATHER,
+    &clip::CLIP,
+    &bear::BEAR,
+    &name::NAME,
+    &tally::TALLY,
+    &renew::RENEW,
+    &rank::RANK,
+    &merge::MERGE,
+    &place::PLACE,
+    &keep::KEEP,
+    &part::PART,
+    &weigh::WEIGH,
+    &offset::OFFSET,
+    &pack::PACK,
+];
+
+/// Bytes of the device for each triangle that a build keeps to if it is not told otherwise.
+const BYTES_PER_TRIANGLE: u64 = 180;
+
+/// The least that a build is given: below that, batches only cost time.
+const LEAST_BYTES: u64 = 4 << 20;
+
+/// Builds the exact-SAH tree of `mesh` on a device, with the bytes of [`Tree::build`].
+///
+/// Costs O(N log N) work, at most 40 dispatches and one read of a few words for each level of the
+/// tree. Of the options, builder and threads mean nothing here.
+///
+/// # Errors
+///
+/// [`GpuError`]: options without meaning, too little memory, or a device that fails.
+///
+/// ```no_run
+/// use kdray::{BuildOptions, Mesh};
+/// use kdray_gpu::{Device, Limits, Selection, build};
+///
+/// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+/// let mesh = Mesh::new(&positions, &[[0, 1, 2]])?;
+/// let device = Device::open(&Selection::Best, &Limits::PORTABLE)?;
+/// let tree = build(&device, &mesh, &BuildOptions::default())?;
+/// assert_eq!(tree.nodes().len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn build(device: &Device, mesh: &Mesh, options: &BuildOptions) -> Result<Tree, GpuError> {
+    Ok(build_reported(device, mesh, options, false)?.0)
+}
+
+/// [`build`], and what it took; with a profile of the kernels if that is asked for, which makes it
+/// slower.
+///
+/// # Errors
+///
+/// As [`build`].
+pub fn build_reported(
+    device: &Device,
+    mesh: &Mesh,
+    options: &BuildOptions,
+    with_profile: bool,
+) -> Result<(Tree, BuildReport), GpuError> {
+    let spare = spare::Spare::default();
+    let mut gpu = gpu::Gpu::new(device, spare, options.memory_budget, with_profile);
+    build_on(&mut gpu, mesh, options)
+}
+
+fn build_on(
+    gpu: &mut gpu::Gpu,
+    mesh: &Mesh,
+    options: &BuildOptions,
+) -> Result<(Tree, BuildReport), GpuError> {
+    let parts = driver::build(gpu, mesh, options, budget(mesh, options), true)?;
+    let tree = Tree::from_parts(mesh, parts.nodes, parts.references, options.cost);
+    let report = BuildReport {
+        peak_bytes: gpu.peak_bytes,
+        tree_bytes: tree.size_bytes() as u64,
+        readbacks: gpu.readbacks,
+        levels: parts.levels,
+        profile: gpu.profile.take(),
+    };
+    Ok((tree, report))
+}
+
+/// Compiles the kernels of the build, which would otherwise happen during the first one.
+///
+/// # Errors
+///
+/// If a kernel is refused, or the device fails.
+pub fn prepare(device: &Device) -> Result<(), GpuError> {
+    KERNELS.iter().try_for_each(|kernel| device.pipeline(&kernel.shader).map(|_| ()))
+}
+
+/// The same with the twins of the kernels, on the CPU: for tests. Without teams, all levels are built
+/// by the kernels of levels.
+///
+/// # Errors
+///
+/// As [`Tree::build`].
+#[doc(hidden)]
+pub fn build_with_twins(
+    mesh: &Mesh,
+    options: &BuildOptions,
+    with_teams: bool,
+) -> Result<Tree, BuildError> {
+    let mut twins = cpu::Twins::default();
+    let parts = driver::build(&mut twins, mesh, options, budget(mesh, options), with_teams)?;
+    Ok(Tree::from_parts(mesh, parts.nodes, parts.references, options.cost))
+}
+
+/// Bytes that the build should keep to.
+fn budget(mesh: &Mesh, options: &BuildOptions) -> u64 {
+    let usual = BYTES_PER_TRIANGLE * mesh.triangles().len() as u64;
+    // Of a budget that must not be exceeded, an eighth is for what nobody can know beforehand.
+    options.memory_budget.map_or(usual.max(LEAST_BYTES), |budget| budget / 8 * 7)
+}

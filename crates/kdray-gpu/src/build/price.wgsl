@@ -1,0 +1,58 @@
+// The lowest price of each node's planes.
+//
+// Twin: `price.rs`. Prices are inverted, so that the lowest is the greatest.
+
+//#import sweep
+
+struct Best {
+    price: atomic<u32>,
+    index: u32,
+    left_index: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage> references: References;
+@group(0) @binding(2) var<storage> nodes: array<Node>;
+@group(0) @binding(3) var<storage> events: array<Event>;
+@group(0) @binding(4) var<storage> sums: array<u32>;
+@group(0) @binding(5) var<storage> inner: array<u32>;
+@group(0) @binding(6) var<storage, read_write> best: array<Best>;
+
+@compute @workgroup_size(256)
+fn price(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = invocation(group, groups, local);
+    if index >= params.count {
+        return;
+    }
+    let chunks = chunks_of(params.events);
+    let axis = index / chunks;
+    let chunk = index % chunks;
+    let end = min((chunk + 1u) * CHUNK, 2u * references.count);
+    var left = sums[index] - axis * references.count;
+    var slot = NONE;
+    var node: Swept;
+    var lowest = 0u;
+    for (var place = chunk * CHUNK; place < end; place++) {
+        let next = references.list[place / 2u].slot;
+        if next != slot {
+            keep(slot, lowest);
+            slot = next;
+            node = swept(slot, axis);
+            lowest = 0u;
+        }
+        let event = events[axis * params.events + place];
+        lowest = max(lowest, price_at(node, event, place, left));
+        left += event.what & 1u;
+    }
+    keep(slot, lowest);
+}
+
+fn keep(slot: u32, price: u32) {
+    if price > 0u {
+        atomicMax(&best[slot].price, price);
+    }
+}

@@ -1,0 +1,61 @@
+//! Tree after tree, for scenes that move.
+
+use kdray::{BuildOptions, Mesh, Tree};
+
+use super::spare::Spare;
+use super::{BuildReport, gpu, prepare};
+use crate::device::Device;
+use crate::error::GpuError;
+
+/// Builds one tree after the other on a device, each in the memory of the one before.
+///
+/// Every tree is that of [`build`](super::build). After the first no kernel is compiled, and no
+/// memory allocated unless a mesh or its tree is larger; in between, the memory stays allocated.
+///
+/// ```no_run
+/// use kdray::{BuildOptions, Mesh};
+/// use kdray_gpu::{Device, Limits, Rebuilder, Selection};
+///
+/// let device = Device::open(&Selection::Best, &Limits::PORTABLE)?;
+/// let mut rebuilder = Rebuilder::new(&device)?;
+/// for height in [1.0, 2.0, 3.0] {
+///     let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, height, 0.0]];
+///     let mesh = Mesh::new(&positions, &[[0, 1, 2]])?;
+///     let (tree, _) = rebuilder.build(&mesh, &BuildOptions::default())?;
+///     assert_eq!(tree.bounds().upper[1], height);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Rebuilder<'a> {
+    device: &'a Device,
+    spare: Spare,
+}
+
+impl<'a> Rebuilder<'a> {
+    /// Compiles the kernels.
+    ///
+    /// # Errors
+    ///
+    /// As [`prepare`].
+    pub fn new(device: &'a Device) -> Result<Self, GpuError> {
+        prepare(device)?;
+        Ok(Self { device, spare: Spare::kept() })
+    }
+
+    /// Builds the tree of `mesh`, and says what it took.
+    ///
+    /// # Errors
+    ///
+    /// As [`build`](super::build); the next build starts without memory then.
+    pub fn build(
+        &mut self,
+        mesh: &Mesh,
+        options: &BuildOptions,
+    ) -> Result<(Tree, BuildReport), GpuError> {
+        let spare = std::mem::replace(&mut self.spare, Spare::kept());
+        let mut gpu = gpu::Gpu::new(self.device, spare, options.memory_budget, false);
+        let built = super::build_on(&mut gpu, mesh, options)?;
+        self.spare = gpu.leave();
+        Ok(built)
+    }
+}

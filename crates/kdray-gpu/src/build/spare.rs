@@ -1,0 +1,66 @@
+//! Memory that one build leaves to the next.
+
+use crate::device::Buffer;
+use crate::primitives::radix::Sort;
+use crate::primitives::scan::Scan;
+
+/// A spare buffer serves a need of at least its size over this: a smaller factor allocates more
+/// buffers, a larger one gives large buffers to small needs.
+const SLACK: u64 = 2;
+
+/// What is smaller than this serves every smaller need.
+const SMALL_BYTES: u64 = 4096;
+
+/// Buffers that are not in use.
+#[derive(Default)]
+pub(crate) struct Spare {
+    /// `None` if there is no next build: then memory is given back at once.
+    buffers: Option<Vec<Buffer>>,
+    /// Room for scans, of the largest so far.
+    pub(crate) scan: Option<Scan>,
+    /// The same for sorts.
+    pub(crate) sort: Option<Sort>,
+    /// Single words on their way to the host.
+    pub(crate) counts: Option<Buffer>,
+}
+
+impl Spare {
+    /// For the first of several builds.
+    pub(crate) fn kept() -> Self {
+        Self { buffers: Some(Vec::new()), ..Self::default() }
+    }
+
+    /// The smallest buffer of at least `bytes`, unless it is far too large.
+    pub(crate) fn take(&mut self, bytes: u64) -> Option<Buffer> {
+        let buffers = self.buffers.as_mut()?;
+        let fits = bytes..=(SLACK * bytes).max(SMALL_BYTES);
+        let sizes = buffers.iter().map(Buffer::size_bytes).enumerate();
+        let fitting = sizes.filter(|(_, size)| fits.contains(size));
+        let (index, _) = fitting.min_by_key(|(_, size)| *size)?;
+        Some(buffers.swap_remove(index))
+    }
+
+    /// How many words to allocate where `words` are needed: one of four sizes an octave, so that
+    /// the next tree, which is a little larger, finds room in the same buffers.
+    pub(crate) fn generous(&self, words: u64) -> u64 {
+        let step = (words.next_power_of_two() / 8).max(1);
+        if self.buffers.is_some() { words.next_multiple_of(step) } else { words }
+    }
+
+    pub(crate) fn put(&mut self, buffer: Buffer) {
+        if let Some(buffers) = &mut self.buffers {
+            buffers.push(buffer);
+        }
+    }
+
+    /// Gives the memory back.
+    pub(crate) fn clear(&mut self) {
+        if let Some(buffers) = &mut self.buffers {
+            buffers.clear();
+        }
+    }
+
+    pub(crate) fn size_bytes(&self) -> u64 {
+        self.buffers.iter().flatten().map(Buffer::size_bytes).sum()
+    }
+}
