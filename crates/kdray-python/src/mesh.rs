@@ -1,0 +1,88 @@
+//! The mesh of a tree, in world coordinates.
+
+use numpy::{PyArray2, PyReadonlyArrayDyn};
+use pyo3::prelude::*;
+
+use crate::arrays::{flat, zeros};
+use crate::error;
+use crate::tree::{Tree, table};
+
+#[pymethods]
+impl Tree {
+    /// World coordinates of places on triangles; NaN where the triangle is -1.
+    fn points<'py>(
+        &self,
+        py: Python<'py>,
+        triangle: PyReadonlyArrayDyn<'_, i32>,
+        u: PyReadonlyArrayDyn<'_, f32>,
+        v: PyReadonlyArrayDyn<'_, f32>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (triangle, u, v) = (flat(&triangle)?, flat(&u)?, flat(&v)?);
+        if u.len() != triangle.len() || v.len() != triangle.len() {
+            return Err(error::value("arrays of different lengths"));
+        }
+        let mut points = zeros(triangle.len())?;
+        for (index, point) in points.iter_mut().enumerate() {
+            let [u, v] = [u[index], v[index]].map(f64::from);
+            *point = self.corners(triangle[index]).map_or([f64::NAN; 3], |[a, b, c]| {
+                [0, 1, 2].map(|axis| (1.0 - u - v) * a[axis] + u * b[axis] + v * c[axis])
+            });
+        }
+        Ok(table(py, points))
+    }
+
+    /// Unit normals of triangles: zero without area, NaN where the triangle is -1.
+    fn normals<'py>(
+        &self,
+        py: Python<'py>,
+        triangle: PyReadonlyArrayDyn<'_, i32>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let triangle = flat(&triangle)?;
+        let mut normals = zeros(triangle.len())?;
+        for (index, normal) in normals.iter_mut().enumerate() {
+            let normal_of = |index| self.mesh.normal(index).unwrap_or_default();
+            *normal = self.index(triangle[index]).map_or([f32::NAN; 3], normal_of);
+        }
+        Ok(table(py, normals))
+    }
+
+    /// World coordinates of the vertices.
+    fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        let frame = self.mesh.frame();
+        table(py, self.mesh.positions().iter().map(|point| frame.world_point(*point)).collect())
+    }
+
+    fn faces<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i32>> {
+        table(py, self.mesh.triangles().iter().map(|face| face.map(|index| index as i32)).collect())
+    }
+
+    #[getter]
+    fn triangle_count(&self) -> usize {
+        self.mesh.triangles().len()
+    }
+
+    #[getter]
+    fn vertex_count(&self) -> usize {
+        self.mesh.positions().len()
+    }
+
+    /// Lower and upper corner of the mesh's box.
+    #[getter]
+    fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        let kdray::Aabb { lower, upper } = self.mesh.bounds();
+        table(py, [lower, upper].map(|corner| self.mesh.frame().world_point(corner)).to_vec())
+    }
+}
+
+impl Tree {
+    /// World coordinates of a triangle's corners, if there is such a triangle.
+    fn corners(&self, triangle: i32) -> Option<[[f64; 3]; 3]> {
+        let corners = self.mesh.triangle(self.index(triangle)?);
+        Some(corners.map(|corner| self.mesh.frame().world_point(corner)))
+    }
+
+    /// A triangle of the mesh, if it is one.
+    fn index(&self, triangle: i32) -> Option<usize> {
+        usize::try_from(triangle).ok().filter(|index| *index < self.triangle_count())
+    }
+}

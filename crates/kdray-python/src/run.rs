@@ -1,0 +1,133 @@
+//! Work on all cores, while the interpreter goes on and Ctrl-C is heard.
+
+use std::collections::HashMap;
+use std::mem;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use kdray::BatchOptions;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// How often a call that takes long asks the interpreter for signals.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// The most threads that can be asked for.
+const MOST_THREADS: usize = 1024;
+
+/// What the caller and the work say to each other.
+#[derive(Default)]
+pub(crate) struct Watch {
+    cancelled: AtomicBool,
+    /// The bits of the fraction that is done.
+    progress: AtomicU32,
+}
+
+impl Watch {
+    pub(crate) fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// A flag that becomes true when the work should end.
+    pub(crate) fn cancel(&self) -> &AtomicBool {
+        &self.cancelled
+    }
+
+    /// Options of a batch that is asked on the threads at hand, and ends when the work should.
+    pub(crate) fn batch_options(&self) -> BatchOptions<'_> {
+        BatchOptions { cancel: Some(&self.cancelled), ..BatchOptions::default() }
+    }
+
+    pub(crate) fn report(&self, fraction: f32) {
+        self.progress.store(fraction.to_bits(), Ordering::Relaxed);
+    }
+
+    /// Lets the interpreter handle its signals, and the caller see the progress.
+    fn attend(&self, py: Python<'_>, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+        py.check_signals()?;
+        if let Some(progress) = progress {
+            progress.call1(py, (f32::from_bits(self.progress.load(Ordering::Relaxed)),))?;
+        }
+        Ok(())
+    }
+}
+
+/// Gives what `work` gives, on `threads` threads (0 for one a core) and detached from the
+/// interpreter. `progress` is called with the fraction that is done, last with 1.
+///
+/// # Errors
+///
+/// What a signal handler or `progress` raises; the work was told to end, and has.
+pub(crate) fn run<T: Send>(
+    py: Python<'_>,
+    threads: usize,
+    progress: Option<&Py<PyAny>>,
+    work: impl FnOnce(&Watch) -> T + Send,
+) -> PyResult<T> {
+    let pool = pool(threads)?;
+    let watch = Watch::default();
+    let answer = py.detach(|| {
+        pool.in_place_scope(|scope| {
+            let (sender, receiver) = mpsc::channel();
+            let watch = &watch;
+            // The receiver is there until the work has ended.
+            scope.spawn(move |_| sender.send(work(watch)).unwrap_or(()));
+            loop {
+                match receiver.recv_timeout(PATIENCE) {
+                    Ok(answer) => return Ok(answer),
+                    Err(RecvTimeoutError::Timeout) => {}
+                    // The scope hands the panic on.
+                    Err(RecvTimeoutError::Disconnected) => {
+                        return Err(PyRuntimeError::new_err("the work ended without an answer"));
+                    }
+                }
+                if let Err(error) = Python::attach(|py| watch.attend(py, progress)) {
+                    watch.cancelled.store(true, Ordering::Relaxed);
+                    drop(receiver.recv());
+                    return Err(error);
+                }
+            }
+        })
+    })?;
+    watch.report(1.0);
+    watch.attend(py, progress)?;
+    Ok(answer)
+}
+
+/// The pools of this process, by their number of threads.
+struct Pools {
+    process: u32,
+    by_threads: HashMap<usize, Arc<ThreadPool>>,
+}
+
+static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
+
+/// The pool of `threads` threads. Threads do not live on in the child of a fork, so that makes
+/// pools of its own. Callers are attached, and so is whoever forks: the lock is free then.
+fn pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
+    if threads > MOST_THREADS {
+        let message = format!("threads is {threads}, which is more than {MOST_THREADS}");
+        return Err(PyValueError::new_err(message));
+    }
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let process = std::process::id();
+    if pools.as_ref().is_some_and(|pools| pools.process != process) {
+        // Its threads cannot be waited for.
+        mem::forget(pools.take());
+    }
+    let pools = pools.get_or_insert_with(|| Pools { process, by_threads: HashMap::new() });
+    if let Some(pool) = pools.by_threads.get(&threads) {
+        return Ok(Arc::clone(pool));
+    }
+    let named = |index| format!("kdray-{index}");
+    let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(named);
+    let pool = builder.build().map_err(|error| {
+        PyRuntimeError::new_err(format!("threads: could not start {threads}: {error}"))
+    })?;
+    let pool = Arc::new(pool);
+    pools.by_threads.insert(threads, Arc::clone(&pool));
+    Ok(pool)
+}
