@@ -77,3 +77,8 @@ pub(crate) fn resolved_threads(threads: usize) -> usize {
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
     if threads == 0 { cores() } else { threads }
 }
+
+/// Parses a number of times.
+pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|passes| *passes > 0).ok_or_else(|| "not a number above 0".into())
+}

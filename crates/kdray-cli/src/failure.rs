@@ -2,7 +2,8 @@
 
 use std::process::ExitCode;
 
-use kdray::BuildError;
+use kdray::{BatchError, BuildError};
+use kdray_gpu::GpuError;
 use kdray_render::Cancelled;
 
 /// Exit status of a cancelled command: that of a program ended by an interrupt.
@@ -25,7 +26,12 @@ pub(crate) fn report(error: &anyhow::Error, json: bool) -> ExitCode {
 }
 
 fn is_cancelled(error: &anyhow::Error) -> bool {
-    error.is::<Cancelled>() || error.downcast_ref() == Some(&BuildError::Cancelled)
+    let on_gpu = error.downcast_ref();
+    error.is::<Cancelled>()
+        || error.downcast_ref() == Some(&BuildError::Cancelled)
+        || error.downcast_ref() == Some(&BatchError::Cancelled)
+        || on_gpu == Some(&GpuError::Build(BuildError::Cancelled))
+        || on_gpu == Some(&GpuError::Batch(BatchError::Cancelled))
 }
 
 /// The error and its causes, joined by colons. Causes that a message already ends with are not

@@ -1,5 +1,8 @@
 //! `kdray build`: a tree, and what it is like.
 
+pub(crate) mod device;
+pub(crate) mod profile;
+
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -7,13 +10,15 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use clap::Args;
-use kdray::{BuildOptions, BuildReport, Cost, Mesh, Tree};
+use kdray::{BuildOptions, Cost, Mesh, Tree};
 use serde::Serialize;
 
 use crate::commands::info::TreeFigures;
+use crate::device::Choice;
 use crate::progress::Progress;
 use crate::sizes::{bytes, count, parse_bytes};
 use crate::{arguments, atomic, cancel, input, output};
+use device::GpuFigures;
 
 #[derive(Args)]
 pub(crate) struct Arguments {
@@ -32,6 +37,12 @@ pub(crate) struct Arguments {
     /// Nodes with at most this many triangles are leaves; 0 leaves that to the prices
     #[arg(long, value_name = "L", default_value_t = 0)]
     max_leaf: u32,
+    /// Where to build: `cpu`, `gpu` for the best one, `auto` for a real GPU or else the CPU, or the index
+    /// or a part of the name of a device in `kdray devices`
+    #[arg(long, value_name = "DEVICE", default_value = "cpu", value_parser = Choice::parse)]
+    device: Choice,
+    #[command(flatten)]
+    profile: profile::ProfileArguments,
     /// Cut the boxes of straddling triangles instead of the triangles: a worse tree, sooner
     #[arg(long)]
     no_clip: bool,
@@ -56,11 +67,21 @@ struct Prices {
     empty_bonus: f32,
 }
 
+/// A tree, and what it took.
+pub(crate) struct Built {
+    pub(crate) tree: Tree,
+    pub(crate) build_s: f64,
+    peak_bytes: u64,
+    pub(crate) gpu: Option<GpuFigures>,
+}
+
 #[derive(Serialize)]
 struct Report {
     mesh: String,
     builder: &'static str,
     device: &'static str,
+    #[serde(flatten)]
+    gpu: Option<GpuFigures>,
     threads: usize,
     build_s: f64,
     peak_bytes: u64,
@@ -76,17 +97,18 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         atomic::check_writable(target)?;
     }
     let mesh = input::mesh(&arguments.mesh.path, &arguments.mesh.repair)?;
-    let (tree, built, build_s) = build(&mesh, arguments, cancel)?;
+    let Built { tree, build_s, peak_bytes, gpu } = build(&mesh, arguments, cancel)?;
     if let Some(target) = &arguments.output {
         atomic::write(target, |file, _| Ok(file.write_all(&tree.to_bytes())?))?;
     }
     let report = Report {
         mesh: arguments.mesh.path.display().to_string(),
         builder: arguments.build.builder.name(),
-        device: "cpu",
+        device: if gpu.is_some() { "gpu" } else { "cpu" },
+        gpu,
         threads: arguments::resolved_threads(arguments.build.threads),
         build_s,
-        peak_bytes: built.peak_bytes,
+        peak_bytes,
         tree: TreeFigures::of(&tree),
         file: arguments.output.as_ref().map(|path| path.display().to_string()),
     };
@@ -94,11 +116,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn build(
-    mesh: &Mesh,
-    arguments: &Arguments,
-    cancel: &AtomicBool,
-) -> anyhow::Result<(Tree, BuildReport, f64)> {
+fn build(mesh: &Mesh, arguments: &Arguments, cancel: &AtomicBool) -> anyhow::Result<Built> {
+    let device = arguments.device.open()?;
+    arguments.profile.check(device.is_some())?;
     let progress = Progress::new("building");
     let options = BuildOptions {
         builder: arguments.build.builder.builder(),
@@ -115,9 +135,13 @@ fn build(
         progress: Some(&|fraction| progress.set(fraction)),
         cancel: Some(cancel),
     };
-    let start = Instant::now();
-    let (tree, report) = Tree::build_reported(mesh, &options)?;
-    Ok((tree, report, start.elapsed().as_secs_f64()))
+    let Some(device) = device else {
+        let start = Instant::now();
+        let (tree, report) = Tree::build_reported(mesh, &options)?;
+        let (build_s, peak_bytes) = (start.elapsed().as_secs_f64(), report.peak_bytes);
+        return Ok(Built { tree, build_s, peak_bytes, gpu: None });
+    };
+    device::build(&device, mesh, &options, &arguments.profile)
 }
 
 impl Report {
@@ -125,11 +149,20 @@ impl Report {
         let triangles = count(self.tree.triangles);
         let mut rows = vec![
             ("mesh", format!("{}, {triangles} triangles", self.mesh)),
-            ("build", format!("{:.3} s, {}, {} threads", self.build_s, self.builder, self.threads)),
+            ("build", format!("{:.3} s, {}, {}", self.build_s, self.builder, self.place())),
             ("peak memory", bytes(self.peak_bytes)),
         ];
         rows.extend(self.tree.rows());
         rows.extend(self.file.iter().map(|file| ("saved", file.clone())));
-        output::table(&rows)
+        let profile = self.gpu.as_ref().and_then(|gpu| gpu.profile.as_ref());
+        output::table(&rows) + &profile.map_or_else(String::new, |profile| profile.text())
+    }
+
+    /// On what it was built.
+    fn place(&self) -> String {
+        match &self.gpu {
+            Some(gpu) => format!("{}, {}", gpu.adapter, gpu.driver),
+            None => format!("{} threads", self.threads),
+        }
     }
 }

@@ -9,9 +9,11 @@ use std::time::Instant;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use kdray::{BuildOptions, Mesh, Tracer, Tree};
-use kdray_render::{Camera, Picture, RenderOptions, Sky, Sun};
+use kdray_gpu::Device;
+use kdray_render::{Camera, Picture, RenderError, RenderOptions, Sky, Sun, render_with};
 use serde::Serialize;
 
+use crate::device::{Choice, OnDevice};
 use crate::progress::Progress;
 use crate::sizes::{PictureSize, count, parse_point};
 use crate::{arguments, atomic, cancel, input, output};
@@ -46,6 +48,11 @@ pub(crate) struct Arguments {
     view: View,
     #[command(flatten)]
     build: arguments::Build,
+    /// Where the tree is built and rays are traced: `cpu`, `gpu` for the best one, `auto` for a real GPU
+    /// or else the CPU, or the index or a part of the name of a device in `kdray devices`. Surfaces are
+    /// shaded on the CPU; the picture is the same
+    #[arg(long, value_name = "DEVICE", default_value = "cpu", value_parser = Choice::parse)]
+    device: Choice,
     #[command(flatten)]
     repair: arguments::Repair,
     #[command(flatten)]
@@ -54,7 +61,7 @@ pub(crate) struct Arguments {
 
 /// Where the camera is. Coordinates are those of the mesh's file.
 #[derive(Args)]
-struct View {
+pub(crate) struct View {
     /// Where the camera is [default: where all of the mesh is in view]
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true)]
     eye: Option<[f64; 3]>,
@@ -73,7 +80,7 @@ struct View {
 }
 
 #[derive(Clone, Copy, Default, ValueEnum)]
-enum Shading {
+pub(crate) enum Shading {
     /// Surface directions as colours
     Normals,
     /// Ambient occlusion: how open the surroundings of a point are
@@ -98,6 +105,8 @@ struct Report {
     triangles: usize,
     builder: &'static str,
     device: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    adapter: Option<String>,
     threads: usize,
     build_s: f64,
     trace_s: f64,
@@ -115,14 +124,17 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         Some(path) => (path.display().to_string(), input::mesh(path, &arguments.repair)?),
         None => (input::SHOWCASE.to_owned(), input::showcase(arguments.triangles)?),
     };
-    let (tracer, build_s) = build(&mesh, arguments, cancel)?;
-    let (picture, trace_s) = trace(&mesh, &tracer, arguments, cancel)?;
+    let device = arguments.device.open()?;
+    let device = device.as_ref();
+    let (tree, build_s) = build(&mesh, device, arguments, cancel)?;
+    let (picture, trace_s) = trace(&mesh, &tree, device, arguments, cancel)?;
     atomic::write(&arguments.output, |_, path| Ok(picture.save_png(path)?))?;
     let report = Report {
         mesh: name,
         triangles: mesh.triangles().len(),
         builder: arguments.build.builder.name(),
-        device: "cpu",
+        device: if device.is_some() { "gpu" } else { "cpu" },
+        adapter: device.map(|device| device.adapter().name.clone()),
         threads: arguments::resolved_threads(arguments.build.threads),
         build_s,
         trace_s,
@@ -136,7 +148,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn build(mesh: &Mesh, arguments: &Arguments, cancel: &AtomicBool) -> anyhow::Result<(Tracer, f64)> {
+fn build(
+    mesh: &Mesh,
+    device: Option<&Device>,
+    arguments: &Arguments,
+    cancel: &AtomicBool,
+) -> anyhow::Result<(Tree, f64)> {
+    device.map_or(Ok(()), kdray_gpu::prepare)?;
     let progress = Progress::new("building");
     let options = BuildOptions {
         builder: arguments.build.builder.builder(),
@@ -146,14 +164,17 @@ fn build(mesh: &Mesh, arguments: &Arguments, cancel: &AtomicBool) -> anyhow::Res
         ..BuildOptions::default()
     };
     let start = Instant::now();
-    let tree = Tree::build(mesh, &options)?;
-    let seconds = start.elapsed().as_secs_f64();
-    Ok((Tracer::new(mesh, &tree), seconds))
+    let tree = match device {
+        None => Tree::build(mesh, &options)?,
+        Some(device) => kdray_gpu::build(device, mesh, &options)?,
+    };
+    Ok((tree, start.elapsed().as_secs_f64()))
 }
 
 fn trace(
     mesh: &Mesh,
-    tracer: &Tracer,
+    tree: &Tree,
+    device: Option<&Device>,
     arguments: &Arguments,
     cancel: &AtomicBool,
 ) -> anyhow::Result<(Picture, f64)> {
@@ -174,18 +195,40 @@ fn trace(
     let camera = arguments.view.camera(mesh, options.aspect());
     let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.build.threads).build();
     let threads = threads.context("cannot start the threads")?;
+    let Some(device) = device else {
+        let tracer = Tracer::new(mesh, tree);
+        let start = Instant::now();
+        let picture = threads.install(|| kdray_render::render(&tracer, mesh, &camera, &options))?;
+        return Ok((picture, start.elapsed().as_secs_f64()));
+    };
+    let caster = OnDevice(kdray_gpu::Tracer::new(device, mesh, tree)?);
+    caster.0.prepare()?;
     let start = Instant::now();
-    let picture = threads.install(|| kdray_render::render(tracer, mesh, &camera, &options))?;
+    let picture = threads.install(|| render_with(&caster, mesh, &camera, &options));
+    let picture = picture.map_err(|error| match error {
+        RenderError::Cancelled(cancelled) => anyhow::Error::from(cancelled),
+        RenderError::Caster(error) => anyhow::anyhow!(error),
+    })?;
     Ok((picture, start.elapsed().as_secs_f64()))
 }
 
 impl View {
     fn camera(&self, mesh: &Mesh, aspect: f32) -> Camera {
+        self.camera_over(mesh, |up| Camera::framing_mesh(mesh, up, aspect))
+    }
+
+    /// A camera in the coordinates of `mesh`; what nobody asked for is as in `framing`, which gets
+    /// the direction that is up.
+    pub(crate) fn camera_over(
+        &self,
+        mesh: &Mesh,
+        framing: impl FnOnce([f32; 3]) -> Camera,
+    ) -> Camera {
         let up = match self.up {
             Up::Y => Camera::Y_UP,
             Up::Z => Camera::Z_UP,
         };
-        let framing = Camera::framing_mesh(mesh, up, aspect);
+        let framing = framing(up);
         let local = |point: [f64; 3]| mesh.frame().local_point(point);
         Camera {
             eye: self.eye.map_or(framing.eye, local),
@@ -195,7 +238,7 @@ impl View {
         }
     }
 
-    fn sky(&self) -> Sky {
+    pub(crate) fn sky(&self) -> Sky {
         let sky = Sky::default();
         let moved = |sun| match self.sun {
             Some([azimuth, elevation]) => Sun { azimuth, elevation, ..sun },
@@ -223,7 +266,7 @@ fn parse_sun(text: &str) -> Result<[f32; 2], String> {
 }
 
 impl Shading {
-    fn shading(self) -> kdray_render::Shading {
+    pub(crate) fn shading(self) -> kdray_render::Shading {
         match self {
             Self::Normals => kdray_render::Shading::Normals,
             Self::Ao => kdray_render::Shading::Ao,

@@ -1,13 +1,14 @@
 //! `kdray bench`: what this machine makes of it.
 
 mod measure;
+pub(crate) mod paper;
 mod rays;
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::Args;
+use clap::{Args, Subcommand};
 use kdray::Mesh;
 use serde::Serialize;
 
@@ -16,7 +17,10 @@ use crate::{arguments, cancel, input, output};
 use measure::Measurement;
 
 #[derive(Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub(crate) struct Arguments {
+    #[command(subcommand)]
+    special: Option<Special>,
     /// The meshes [default: the built-in scene]
     #[arg(value_name = "MESH")]
     meshes: Vec<PathBuf>,
@@ -24,7 +28,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "1,0")]
     threads: Vec<usize>,
     /// How often everything is measured; the best pass counts
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = arguments::at_least_one)]
     passes: usize,
     /// Triangles of the built-in scene
     #[arg(long, value_name = "N", default_value_t = 100_000, conflicts_with = "meshes")]
@@ -32,7 +36,23 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     repair: arguments::Repair,
     #[command(flatten)]
-    pub(crate) json: arguments::Json,
+    json: arguments::Json,
+}
+
+#[derive(Subcommand)]
+enum Special {
+    /// Measure the paper's eight scenes, and write a report beside its tables and figures
+    Paper(paper::Arguments),
+}
+
+impl Arguments {
+    /// Whether standard output is for JSON.
+    pub(crate) fn prints_json(&self) -> bool {
+        match &self.special {
+            Some(Special::Paper(arguments)) => arguments.prints_json(),
+            None => self.json.json,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -51,6 +71,9 @@ struct Result {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    if let Some(Special::Paper(arguments)) = &arguments.special {
+        return paper::run(arguments);
+    }
     let cancel = cancel::flag()?;
     let mut results = Vec::new();
     let mut measure = |name: String, mesh: &Mesh| {
@@ -79,10 +102,6 @@ fn distinct(threads: &[usize]) -> Vec<usize> {
     resolved.sort_unstable();
     resolved.dedup();
     resolved
-}
-
-fn at_least_one(text: &str) -> std::result::Result<usize, String> {
-    text.parse().ok().filter(|passes| *passes > 0).ok_or_else(|| "not a number above 0".into())
 }
 
 impl Report {

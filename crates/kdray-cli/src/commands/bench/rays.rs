@@ -22,15 +22,19 @@ pub(super) struct Start {
 
 /// Camera rays that have all of the mesh in view.
 pub(super) fn primary(mesh: &Mesh) -> Vec<Ray> {
-    let camera = Camera::framing(&mesh.bounds(), Camera::Y_UP, 1.0);
+    through(&Camera::framing(&mesh.bounds(), Camera::Y_UP, 1.0), SIDE)
+}
+
+/// Camera rays through a square picture with `side` pixels along a side, a multiple of 4.
+pub(super) fn through(camera: &Camera, side: u32) -> Vec<Ray> {
     let ray = |index: u32| {
         let (tile, pixel) = (index / 16, index % 16);
-        let x = tile % (SIDE / 4) * 4 + pixel % 4;
-        let y = tile / (SIDE / 4) * 4 + pixel / 4;
-        let place = |pixel: u32| 2.0 * (pixel as f32 + 0.5) / SIDE as f32 - 1.0;
+        let x = tile % (side / 4) * 4 + pixel % 4;
+        let y = tile / (side / 4) * 4 + pixel / 4;
+        let place = |pixel: u32| 2.0 * (pixel as f32 + 0.5) / side as f32 - 1.0;
         camera.ray(place(x), -place(y), 1.0)
     };
-    (0..SIDE * SIDE).map(ray).collect()
+    (0..side * side).map(ray).collect()
 }
 
 /// Where the rays hit, lifted a little.
