@@ -121,6 +121,8 @@ pub(crate) enum Mode {
     Single,
     Packet8,
     Packet16,
+    /// As many as a thread takes at a time, for the engine to arrange as it likes.
+    Batch,
 }
 
 /// A set of rays; `rays.rs` says exactly which.
@@ -215,9 +217,13 @@ impl Definition {
 
 impl EngineDefinition {
     fn check(&self) -> Result<()> {
-        let packets = self.modes.iter().any(|mode| *mode != Mode::Single);
-        if packets && !matches!(self.library, Library::Embree(_)) {
-            bail!("engine {}: only Embree takes packets", self.name);
+        for mode in &self.modes {
+            match (mode, &self.library) {
+                (Mode::Single, _) | (Mode::Batch, Library::Kdray(_)) => {}
+                (Mode::Packet8 | Mode::Packet16, Library::Embree(_)) => {}
+                (Mode::Batch, _) => bail!("engine {}: only kdray takes batches", self.name),
+                _ => bail!("engine {}: only Embree takes packets", self.name),
+            }
         }
         ensure!(!self.modes.is_empty(), "engine {}: no mode", self.name);
         ensure!(self.passes != Some(0), "engine {}: passes must be at least 1", self.name);

@@ -190,6 +190,7 @@ fn suffix(mode: Mode) -> &'static str {
         Mode::Single => "",
         Mode::Packet8 => ", packets of 8",
         Mode::Packet16 => ", packets of 16",
+        Mode::Batch => ", batches",
     }
 }
 

@@ -47,19 +47,44 @@ impl Builder for TreeBuilder {
 
 struct Traced(Tracer);
 
+/// Rays of a batch: as many as kdray gives one thread at a time, so that the runner's threads are
+/// all there are.
+const BATCH: usize = 1024;
+
 impl Index for Traced {
-    fn closest(&self, _mode: Mode, rays: &[Ray], hits: &mut [Hit]) {
+    fn closest(&self, mode: Mode, rays: &[Ray], hits: &mut [Hit]) {
+        if mode == Mode::Batch {
+            return self.closest_in_batches(rays, hits);
+        }
         for (ray, answer) in rays.iter().zip(hits) {
-            *answer = match self.0.closest_hit(ray) {
-                Some(hit) => Hit { t: hit.t, triangle: hit.triangle },
-                None => Hit::MISS,
-            };
+            *answer = hit(self.0.closest_hit(ray));
         }
     }
 
-    fn any(&self, _mode: Mode, rays: &[Ray], occluded: &mut [bool]) {
+    fn any(&self, mode: Mode, rays: &[Ray], occluded: &mut [bool]) {
+        if mode == Mode::Batch {
+            let batches = rays.chunks(BATCH).zip(occluded.chunks_mut(BATCH));
+            return batches.for_each(|(rays, occluded)| self.0.any_hits(rays, occluded));
+        }
         for (ray, answer) in rays.iter().zip(occluded) {
             *answer = self.0.any_hit(ray);
         }
     }
+}
+
+impl Traced {
+    fn closest_in_batches(&self, rays: &[Ray], hits: &mut [Hit]) {
+        let mut found = [None; BATCH];
+        for (rays, answers) in rays.chunks(BATCH).zip(hits.chunks_mut(BATCH)) {
+            let found = &mut found[..rays.len()];
+            self.0.closest_hits(rays, found);
+            for (found, answer) in found.iter().zip(answers) {
+                *answer = hit(*found);
+            }
+        }
+    }
+}
+
+fn hit(found: Option<kdray::Hit>) -> Hit {
+    found.map_or(Hit::MISS, |hit| Hit { t: hit.t, triangle: hit.triangle })
 }

@@ -211,9 +211,11 @@ impl Index for Committed {
         // of the size in the function's name.
         unsafe {
             match mode {
-                Mode::Single => self.closest_by(rays, hits, |_, packet, arguments| {
-                    (api.rtcIntersect1)(scene, packet, arguments);
-                }),
+                Mode::Single | Mode::Batch => {
+                    self.closest_by(rays, hits, |_, packet, arguments| {
+                        (api.rtcIntersect1)(scene, packet, arguments);
+                    })
+                }
                 Mode::Packet8 => self.closest_by(rays, hits, |valid, packet, arguments| {
                     (api.rtcIntersect8)(valid, scene, packet, arguments);
                 }),
@@ -229,9 +231,11 @@ impl Index for Committed {
         // SAFETY: as in `closest`.
         unsafe {
             match mode {
-                Mode::Single => self.any_by(rays, occluded, |_, packet, arguments| {
-                    (api.rtcOccluded1)(scene, packet, arguments);
-                }),
+                Mode::Single | Mode::Batch => {
+                    self.any_by(rays, occluded, |_, packet, arguments| {
+                        (api.rtcOccluded1)(scene, packet, arguments);
+                    })
+                }
                 Mode::Packet8 => self.any_by(rays, occluded, |valid, packet, arguments| {
                     (api.rtcOccluded8)(valid, scene, packet, arguments);
                 }),
