@@ -16,6 +16,7 @@ lint:
 
 # Runs every test.
 test:
+    .ci/vulkan
     cargo test --workspace
 
 # Measures kdray beside its peers on the meshes of a folder and writes a record.
@@ -26,6 +27,19 @@ bench record meshes="../shared/meshes" threads="1,2":
 # Prints a record as the README's tables.
 table record:
     cargo run --release -p kdray-bench -- table {{ record }}
+
+# Builds the Python package's wheel, installs it in a clean environment and tests it there.
+python:
+    python/test
+
+# Builds the Python package's documentation as a site; needs python/requirements.txt.
+python-docs:
+    cd python && mkdocs build
+
+# Measures the Python package beside Open3D and trimesh; needs it installed.
+python-bench record meshes="../shared/meshes":
+    python python/bench/compare.py run {{ meshes }}/bunny.ply {{ meshes }}/sponza.ply \
+        {{ meshes }}/dragon.ply --output {{ record }}
 
 # Builds the documentation of all crates.
 docs:
