@@ -1,6 +1,8 @@
 //! Rays that go the same way are answered in packets, and each as it is alone.
 
-use kdray::{BuildOptions, Hit, Ray, Tracer, Tree};
+use std::ops::ControlFlow;
+
+use kdray::{BatchOptions, BuildOptions, Hit, Lists, Ray, Tracer, Tree};
 use kdray_test::random::Random;
 use kdray_test::rays::RayMaker;
 use kdray_test::scenes;
@@ -32,11 +34,23 @@ fn as_alone(name: &str, tracer: &Tracer, rays: &[Ray]) -> usize {
     let (mut closest, mut any) = (vec![None; rays.len()], vec![false; rays.len()]);
     tracer.closest_hits(rays, &mut closest);
     tracer.any_hits(rays, &mut any);
+    let batch = tracer.batch(BatchOptions::default()).expect("no threads are started");
+    let (mut counts, mut lists) = (vec![0; rays.len()], Vec::new());
+    batch.count_hits(rays, &mut counts).expect("nobody cancels");
+    let collect = |found: Lists<Hit>| {
+        lists.extend(found.lists().map(<[Hit]>::to_vec));
+        ControlFlow::Continue(())
+    };
+    batch.all_hits(rays, collect).expect("nobody cancels");
+    let mut all = Vec::new();
     let bits = |hit: Hit| [hit.t.to_bits(), hit.u.to_bits(), hit.v.to_bits(), hit.triangle];
     for (index, ray) in rays.iter().enumerate() {
         let alone = tracer.closest_hit(ray);
         assert_eq!(alone.map(bits), closest[index].map(bits), "{name}: ray {index} of {rays:?}");
         assert_eq!(tracer.any_hit(ray), any[index], "{name}: ray {index} of {rays:?}");
+        tracer.all_hits(ray, &mut all);
+        assert_eq!(all, lists[index], "{name}: ray {index} of {rays:?}");
+        assert_eq!(all.len(), counts[index] as usize, "{name}: ray {index} of {rays:?}");
     }
     closest.iter().flatten().count()
 }

@@ -1,5 +1,7 @@
 //! What the queries keep of the hits they are shown.
 
+use smallvec::SmallVec;
+
 use super::Counts;
 use super::traverse::{ENOUGH, Visitor};
 use crate::geometry::{Hit, Ray};
@@ -102,22 +104,22 @@ impl<F: Fn(u32) -> bool> Visitor for Any<F> {
 /// A triangle in several leaves gives the very same hit in each of them, so repeated hits are
 /// equal and stand side by side. Leaves come from front to back: a hit finds its place by looking
 /// back over the few that are beyond it.
-pub(super) struct FirstHits<'a, F> {
+pub(super) struct FirstHits<F> {
     t_min: f32,
     t_max: f32,
     limit: usize,
     accept: F,
-    hits: &'a mut Vec<Hit>,
+    pub(super) hits: Vec<Hit>,
 }
 
-impl<'a, F> FirstHits<'a, F> {
+impl<F> FirstHits<F> {
     /// Keeps them in `hits`, which is empty; `limit` is not zero.
-    pub(super) fn new(ray: &Ray, limit: usize, accept: F, hits: &'a mut Vec<Hit>) -> Self {
+    pub(super) fn new(ray: &Ray, limit: usize, accept: F, hits: Vec<Hit>) -> Self {
         Self { t_min: ray.t_min, t_max: ray.t_max, limit, accept, hits }
     }
 }
 
-impl<F: Fn(u32) -> bool> Visitor for FirstHits<'_, F> {
+impl<F: Fn(u32) -> bool> Visitor for FirstHits<F> {
     #[inline(always)]
     fn hit(&mut self, hit: Hit) -> f32 {
         let inside = self.t_min <= hit.t && hit.t <= self.t_max;
@@ -137,6 +139,61 @@ impl<F: Fn(u32) -> bool> Visitor for FirstHits<'_, F> {
         }
         self.t_max
     }
+
+    /// Looks at the last few: a triangle in several leaves comes again soon.
+    #[inline(always)]
+    fn knows(&self, triangle: u32) -> bool {
+        self.hits.iter().rev().take(4).any(|hit| hit.triangle == triangle)
+    }
+}
+
+/// Counts hits, each triangle once, and asks where they are only if it must.
+///
+/// Few rays hit more triangles than there is room for here.
+pub(super) struct Crossings<F> {
+    t_min: f32,
+    t_max: f32,
+    accept: F,
+    /// The triangles that were hit; some of them more than once.
+    crossed: SmallVec<[u32; 8]>,
+}
+
+impl<F> Crossings<F> {
+    pub(super) fn new(ray: &Ray, accept: F) -> Self {
+        Self { t_min: ray.t_min, t_max: ray.t_max, accept, crossed: SmallVec::new() }
+    }
+
+    /// How many triangles were hit.
+    pub(super) fn count(mut self) -> usize {
+        self.crossed.sort_unstable();
+        self.crossed.dedup();
+        self.crossed.len()
+    }
+}
+
+impl<F: Fn(u32) -> bool> Visitor for Crossings<F> {
+    #[inline(always)]
+    fn hit(&mut self, hit: Hit) -> f32 {
+        if self.t_min <= hit.t && hit.t <= self.t_max {
+            self.inside(hit.triangle);
+        }
+        self.t_max
+    }
+
+    const ASKS_WHETHER: bool = true;
+
+    #[inline(always)]
+    fn inside(&mut self, triangle: u32) -> f32 {
+        if !self.knows(triangle) && (self.accept)(triangle) {
+            self.crossed.push(triangle);
+        }
+        self.t_max
+    }
+
+    #[inline(always)]
+    fn knows(&self, triangle: u32) -> bool {
+        self.crossed.iter().rev().take(4).any(|other| *other == triangle)
+    }
 }
 
 /// Hits come in order of `t`; of several at one `t` the lowest triangle comes first.
@@ -149,13 +206,12 @@ mod tests {
     use super::*;
 
     fn keep(limit: usize, shown: &[(f32, u32)]) -> Vec<(f32, u32)> {
-        let mut hits = Vec::new();
         let ray = Ray::new([0.0; 3], [1.0, 0.0, 0.0]);
-        let mut first = FirstHits::new(&ray, limit, |_| true, &mut hits);
+        let mut first = FirstHits::new(&ray, limit, |_| true, Vec::new());
         for (t, triangle) in shown {
             first.hit(Hit { t: *t, triangle: *triangle, u: 0.0, v: 0.0 });
         }
-        hits.iter().map(|hit| (hit.t, hit.triangle)).collect()
+        first.hits.iter().map(|hit| (hit.t, hit.triangle)).collect()
     }
 
     const SHOWN: [(f32, u32); 6] = [(2.0, 7), (1.0, 9), (2.0, 7), (2.0, 3), (0.5, 1), (2.0, 3)];

@@ -1,15 +1,8 @@
 //! Queries for one ray, among the triangles that the caller accepts.
 
-use std::cell::RefCell;
-
-use super::hits::{Any, Closest, Counted, FirstHits};
+use super::hits::{Any, Closest, Counted, Crossings, FirstHits};
 use super::{Counts, Tracer};
 use crate::geometry::{Hit, Ray};
-
-thread_local! {
-    /// Hits that are only counted.
-    static HITS: RefCell<Vec<Hit>> = const { RefCell::new(Vec::new()) };
-}
 
 /// A [`Tracer`] that sees some triangles only; made by [`Tracer::only`].
 pub struct Only<'a, F> {
@@ -50,8 +43,9 @@ impl<'a, F: Fn(u32) -> bool> Only<'a, F> {
     pub fn first_hits(&self, ray: &Ray, limit: usize, hits: &mut Vec<Hit>) {
         hits.clear();
         if limit > 0 {
-            let mut first = FirstHits::new(ray, limit, &self.accept, hits);
+            let mut first = FirstHits::new(ray, limit, &self.accept, std::mem::take(hits));
             self.tracer.visit(ray, &mut first);
+            *hits = first.hits;
         }
     }
 
@@ -63,10 +57,8 @@ impl<'a, F: Fn(u32) -> bool> Only<'a, F> {
     /// As [`Tracer::count_hits`].
     #[must_use]
     pub fn count_hits(&self, ray: &Ray) -> usize {
-        let mut hits = HITS.take();
-        self.all_hits(ray, &mut hits);
-        let count = hits.len();
-        HITS.set(hits);
-        count
+        let mut crossings = Crossings::new(ray, &self.accept);
+        self.tracer.visit(ray, &mut crossings);
+        crossings.count()
     }
 }

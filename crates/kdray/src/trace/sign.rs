@@ -1,8 +1,13 @@
 //! Inside or outside, and distances that say which.
 
 use super::Tracer;
-use crate::geometry::Ray;
+use super::hits::Crossings;
+use super::stream::in_packets;
+use crate::geometry::{Aabb, Ray};
 use crate::winding::Winding;
+
+/// A direction that is not along anything that people model; any would do.
+pub(super) const OUTWARDS: [f32; 3] = [0.439_504_65, 0.617_598_6, 0.652_231_5];
 
 /// How inside is told from outside.
 #[derive(Clone, Copy, Default)]
@@ -37,9 +42,35 @@ impl Tracer {
     /// either.
     #[must_use]
     pub fn contains(&self, point: [f32; 3]) -> bool {
-        // Any direction would do; this one is not along anything that people model.
-        let ray = Ray::new(point, [0.439_504_65, 0.617_598_6, 0.652_231_5]);
-        self.count_hits(&ray) % 2 == 1
+        self.way_out(point).is_some_and(|ray| self.count_hits(&ray) % 2 == 1)
+    }
+
+    /// A ray from a point to infinity, one of two whatever the point: the one that leaves the mesh
+    /// sooner. `None` for points beyond the bounds, which are outside.
+    pub(super) fn way_out(&self, point: [f32; 3]) -> Option<Ray> {
+        let Aabb { lower, upper } = self.bounds;
+        let is_within = (0..3).all(|axis| lower[axis] <= point[axis] && point[axis] <= upper[axis]);
+        let beyond_middle = |axis: usize| {
+            OUTWARDS[axis] * ((point[axis] - lower[axis]) - (upper[axis] - point[axis]))
+        };
+        let sense = (beyond_middle(0) + beyond_middle(1) + beyond_middle(2)).signum();
+        is_within.then(|| Ray::new(point, OUTWARDS.map(|component| sense * component)))
+    }
+
+    /// Writes to `inside[i]` whether `points[i]` is [inside](Tracer::contains). Points whose ways out
+    /// are beside each other should follow each other.
+    pub(super) fn contain(&self, points: &[[f32; 3]], inside: &mut [bool]) {
+        inside.fill(false);
+        let ways: Vec<Option<Ray>> = points.iter().map(|point| self.way_out(*point)).collect();
+        // One that goes along with the others and sees nothing.
+        let nowhere = ways.iter().flatten().next().copied().unwrap_or(Ray::new([0.0; 3], OUTWARDS));
+        let rays: Vec<Ray> = ways.iter().map(|way| way.unwrap_or(nowhere)).collect();
+        let begin = |index: usize, ray: &Ray| {
+            (ways[index].is_some() && ray.is_valid()).then(|| Crossings::new(ray, |_| true))
+        };
+        in_packets(&self.trip, &rays, begin, |index, crossings: Crossings<_>| {
+            inside[index] = crossings.count() % 2 == 1;
+        });
     }
 
     /// The distance of `point` from the surface, negative inside. `None` where

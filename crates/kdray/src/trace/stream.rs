@@ -25,10 +25,10 @@ const WALKS: usize = 8;
 pub(super) fn trace<V: Visitor>(
     trip: &Trip,
     rays: &[Ray],
-    begin: impl Fn(&Ray) -> Option<V>,
+    begin: impl FnMut(usize, &Ray) -> Option<V>,
     end: impl FnMut(usize, V),
 ) {
-    if go_the_same_way(rays) {
+    if go_the_same_way(rays) && !start_apart(trip, rays) {
         return in_packets(trip, rays, begin, end);
     }
     if !is_worth_turns(trip, rays) {
@@ -47,16 +47,16 @@ const PACKET: usize = 16;
 
 /// In packets where rays go together, one by one where not: each finds what it reads in the nearest
 /// cache, where the ray before left it.
-fn in_packets<V: Visitor>(
+pub(super) fn in_packets<V: Visitor>(
     trip: &Trip,
     rays: &[Ray],
-    begin: impl Fn(&Ray) -> Option<V>,
+    mut begin: impl FnMut(usize, &Ray) -> Option<V>,
     mut end: impl FnMut(usize, V),
 ) {
     let mut visitors = [const { None }; PACKET];
     for (index, rays) in rays.chunks(PACKET).enumerate() {
-        for (visitor, ray) in visitors.iter_mut().zip(rays) {
-            *visitor = begin(ray);
+        for (lane, (visitor, ray)) in visitors.iter_mut().zip(rays).enumerate() {
+            *visitor = begin(PACKET * index + lane, ray);
         }
         sixteen(trip, rays, &mut visitors[..rays.len()]);
         for (lane, visitor) in visitors.iter_mut().enumerate() {
@@ -104,11 +104,11 @@ fn eight<V: Visitor>(trip: &Trip, rays: &[Ray], visitors: &mut [Option<V>]) {
 fn one_by_one<V: Visitor>(
     trip: &Trip,
     rays: &[Ray],
-    begin: impl Fn(&Ray) -> Option<V>,
+    mut begin: impl FnMut(usize, &Ray) -> Option<V>,
     mut end: impl FnMut(usize, V),
 ) {
     for (index, ray) in rays.iter().enumerate() {
-        if let Some(mut visitor) = begin(ray) {
+        if let Some(mut visitor) = begin(index, ray) {
             traverse(trip, ray, &mut visitor);
             end(index, visitor);
         }
@@ -119,12 +119,7 @@ fn one_by_one<V: Visitor>(
 /// apart, so that each reads what is in no cache, or where they go a long way.
 fn is_worth_turns(trip: &Trip, rays: &[Ray]) -> bool {
     const LONG: u32 = 8;
-    let is_far = |pair: &&[Ray]| {
-        let [a, b] = [pair[0].origin, pair[1].origin];
-        (0..3).any(|axis| (a[axis] - b[axis]).abs() > trip.reach / 32.0)
-    };
-    let pairs = rays.windows(2).step_by(16);
-    if 2 * pairs.clone().filter(is_far).count() >= pairs.count() {
+    if start_apart(trip, rays) {
         return true;
     }
     // A few rays tell how long their ways are.
@@ -136,6 +131,16 @@ fn is_worth_turns(trip: &Trip, rays: &[Ray]) -> bool {
     };
     let (count, sum) = sample.fold((0, 0), |(count, sum), ray| (count + 1, sum + steps(ray)));
     sum >= LONG * count
+}
+
+/// Whether most rays start far from the one before.
+fn start_apart(trip: &Trip, rays: &[Ray]) -> bool {
+    let is_far = |pair: &&[Ray]| {
+        let [a, b] = [pair[0].origin, pair[1].origin];
+        (0..3).any(|axis| (a[axis] - b[axis]).abs() > trip.reach / 32.0)
+    };
+    let pairs = rays.windows(2).step_by(16);
+    2 * pairs.clone().filter(is_far).count() >= pairs.count()
 }
 
 /// Whether most rays have about the direction of the one before.
@@ -158,7 +163,7 @@ fn stream_avx2<V: Visitor>(
     simd: Avx2<V>,
     trip: &Trip,
     rays: &[Ray],
-    begin: impl Fn(&Ray) -> Option<V>,
+    begin: impl FnMut(usize, &Ray) -> Option<V>,
     end: impl FnMut(usize, V),
 ) {
     stream_with(simd, trip, rays, begin, end);
@@ -169,12 +174,12 @@ fn stream_with<V: Visitor>(
     simd: impl Simd,
     trip: &Trip,
     rays: &[Ray],
-    begin: impl Fn(&Ray) -> Option<V>,
+    mut begin: impl FnMut(usize, &Ray) -> Option<V>,
     mut end: impl FnMut(usize, V),
 ) {
     let Trip { layout, reach, .. } = trip;
     let mut waiting =
-        rays.iter().enumerate().filter_map(|(index, ray)| Some((index, ray, begin(ray)?)));
+        rays.iter().enumerate().filter_map(|(index, ray)| Some((index, ray, begin(index, ray)?)));
     let mut stacks: Vec<Stack> = std::iter::repeat_with(Stack::new).take(WALKS).collect();
     let mut walks = Vec::with_capacity(WALKS);
     for (stack, (index, ray, visitor)) in stacks.iter_mut().zip(waiting.by_ref()) {

@@ -10,6 +10,9 @@ mod points;
 mod rays;
 mod stream;
 
+use std::ops::Range;
+use std::sync::Arc;
+
 pub use options::{BatchError, BatchOptions};
 pub use stream::Lists;
 
@@ -21,7 +24,16 @@ use options::Team;
 pub struct Batch<'a> {
     tracer: &'a Tracer,
     options: BatchOptions<'a>,
-    team: Team,
+    team: Arc<Team>,
+    /// What of the progress that is reported is this batch's.
+    share: Range<f32>,
+}
+
+impl<'a> Batch<'a> {
+    /// The same batch, whose progress is a part of it.
+    fn part(&self, share: Range<f32>) -> Self {
+        Self { tracer: self.tracer, options: self.options, team: self.team.clone(), share }
+    }
 }
 
 /// Queries that a thread takes at a time: long enough to hide the hand-over, short enough to share
@@ -66,7 +78,7 @@ impl Tracer {
             assert_eq!(visible.len(), self.triangle_count, "one answer a triangle");
         }
         let team = Team::new(options.threads)?;
-        Ok(Batch { tracer: self, options, team })
+        Ok(Batch { tracer: self, options, team: Arc::new(team), share: 0.0..1.0 })
     }
 
     /// Writes to `hits[i]` the closest hit of `rays[i]`, over the threads of the current `rayon`

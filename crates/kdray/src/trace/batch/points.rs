@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use super::fill::Chunk;
 use super::{Batch, BatchError, Lists};
 use crate::geometry::Aabb;
 use crate::geometry::vector::{dot, minus};
@@ -33,10 +34,16 @@ impl Batch<'_> {
         distances: &mut [Option<f32>],
     ) -> Result<(), BatchError> {
         let ask = |last: &mut Last, _: usize, point: &_| {
-            let closest = last.closest_point(self.tracer, *point, f32::INFINITY)?;
-            Some(sign.of(self.tracer, *point, closest.distance))
+            Some(last.closest_point(self.tracer, *point, f32::INFINITY)?.distance)
         };
-        self.fill(points, distances, true, |point| self.key_of_point(point), ask)
+        let mut inside = vec![false; points.len()];
+        let key = |point: &_| self.key_of_point(point);
+        self.part(0.0..0.8).fill(points, distances, true, key, ask)?;
+        self.part(0.8..1.0).contains(points, sign, &mut inside)?;
+        for (distance, inside) in distances.iter_mut().zip(inside) {
+            *distance = distance.map(|distance| if inside { -distance } else { distance });
+        }
+        Ok(())
     }
 
     /// Writes to `inside[i]` whether `points[i]` is inside.
@@ -46,9 +53,19 @@ impl Batch<'_> {
         sign: Sign,
         inside: &mut [bool],
     ) -> Result<(), BatchError> {
-        let ask = |(): &mut (), _: usize, point: &_| sign.is_inside(self.tracer, *point);
-        let reorder = self.options.reorder;
-        self.fill(points, inside, reorder, |point| self.key_of_point(point), ask)
+        match sign {
+            Sign::Parity => {
+                let ask = |chunk: &Chunk<[f32; 3]>, inside: &mut [bool]| {
+                    self.tracer.contain(chunk.queries, inside);
+                };
+                self.fill_chunks(points, inside, true, |point| self.key_across(point), ask)
+            }
+            Sign::Winding(winding) => {
+                let ask = |(): &mut (), _: usize, point: &[f32; 3]| winding.contains(*point);
+                let reorder = self.options.reorder;
+                self.fill(points, inside, reorder, |point| self.key_of_point(point), ask)
+            }
+        }
     }
 
     /// Gives `sink` the [triangles within](crate::Tracer::within_sphere) `radius` of each point,
@@ -59,7 +76,7 @@ impl Batch<'_> {
         radius: f32,
         sink: impl FnMut(Lists<u32>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
-        let ask = |_: usize, center: &_, triangles: &mut _| {
+        let ask = |center: &_, triangles: &mut _| {
             self.tracer.within_sphere(*center, radius, triangles);
         };
         self.stream(centers, ask, sink)
@@ -72,7 +89,7 @@ impl Batch<'_> {
         regions: &[Aabb],
         sink: impl FnMut(Lists<u32>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
-        let ask = |_: usize, region: &_, triangles: &mut _| {
+        let ask = |region: &_, triangles: &mut _| {
             self.tracer.within_box(region, triangles);
         };
         self.stream(regions, ask, sink)

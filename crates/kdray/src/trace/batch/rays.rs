@@ -1,12 +1,12 @@
 //! Rays.
 
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use super::fill::Chunk;
 use super::{Batch, BatchError, Lists};
 use crate::geometry::{Hit, Ray};
-use crate::trace::Only;
-use crate::trace::hits::{Any, Closest};
+use crate::trace::hits::{Any, Closest, Crossings, FirstHits};
 use crate::trace::stream::trace;
 use crate::trace::traverse::Visitor;
 
@@ -15,23 +15,20 @@ use crate::trace::traverse::Visitor;
 impl Batch<'_> {
     /// Writes to `hits[i]` the [closest hit](crate::Tracer::closest_hit) of `rays[i]`.
     pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) -> Result<(), BatchError> {
-        if self.sees_all() {
-            return self.ask_all(rays, hits, |ray| Closest::new(ray, |_| true), |it| it.hit);
-        }
-        self.ask(rays, hits, |index, ray| self.seen_by(index).closest_hit(ray))
+        let begin = |index: usize, ray: &Ray| Closest::new(ray, self.accept(index));
+        self.ask(rays, hits, begin, |it| it.hit)
     }
 
     /// Writes to `hits[i]` whether `rays[i]` [hits anything](crate::Tracer::any_hit).
     pub fn any_hits(&self, rays: &[Ray], hits: &mut [bool]) -> Result<(), BatchError> {
-        if self.sees_all() {
-            return self.ask_all(rays, hits, |ray| Any::new(ray, |_| true), |it| it.found);
-        }
-        self.ask(rays, hits, |index, ray| self.seen_by(index).any_hit(ray))
+        let begin = |index: usize, ray: &Ray| Any::new(ray, self.accept(index));
+        self.ask(rays, hits, begin, |it| it.found)
     }
 
     /// Writes to `counts[i]` [how many triangles](crate::Tracer::count_hits) `rays[i]` hits.
     pub fn count_hits(&self, rays: &[Ray], counts: &mut [u32]) -> Result<(), BatchError> {
-        self.ask(rays, counts, |index, ray| self.seen_by(index).count_hits(ray) as u32)
+        let begin = |index: usize, ray: &Ray| Crossings::new(ray, self.accept(index));
+        self.ask(rays, counts, begin, |it| it.count() as u32)
     }
 
     /// Gives `sink` the [first](crate::Tracer::first_hits) `limit` hits of each ray, in the order
@@ -44,10 +41,17 @@ impl Batch<'_> {
         sink: impl FnMut(Lists<Hit>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
         self.check_except(rays);
-        let ask = |index: usize, ray: &Ray, hits: &mut Vec<Hit>| {
-            self.seen_by(index).first_hits(ray, limit, hits);
+        let ask = |first: usize, rays: &[Ray], lists: &mut [Vec<Hit>]| {
+            let lists = RefCell::new(lists);
+            let begin = |index: usize, ray: &Ray| {
+                let list = std::mem::take(&mut lists.borrow_mut()[index]);
+                let asked = limit > 0 && ray.is_valid();
+                asked.then(|| FirstHits::new(ray, limit, self.accept(first + index), list))
+            };
+            let end = |index: usize, it: FirstHits<_>| lists.borrow_mut()[index] = it.hits;
+            trace(&self.tracer.trip, rays, begin, end);
         };
-        self.stream(rays, ask, sink)
+        self.stream_groups(rays, ask, sink)
     }
 
     /// Gives `sink` [all hits](crate::Tracer::all_hits) of each ray, as [`Batch::first_hits`].
@@ -59,29 +63,21 @@ impl Batch<'_> {
         self.first_hits(rays, usize::MAX, sink)
     }
 
-    fn ask<A: Default + Send>(
+    /// Writes to `answers[i]` what `answer` makes of the visitor that `begin` gives for `rays[i]`,
+    /// when it has seen what the ray comes to.
+    fn ask<V: Visitor, A: Default + Send>(
         &self,
         rays: &[Ray],
         answers: &mut [A],
-        ask: impl Fn(usize, &Ray) -> A + Sync,
-    ) -> Result<(), BatchError> {
-        self.check_except(rays);
-        let ask = |(): &mut (), index: usize, ray: &Ray| ask(index, ray);
-        self.fill(rays, answers, self.options.reorder, |ray| self.key_of_ray(ray), ask)
-    }
-
-    /// Rays that see every triangle: several at a time, unless they go the same way.
-    fn ask_all<V: Visitor, A: Default + Send>(
-        &self,
-        rays: &[Ray],
-        answers: &mut [A],
-        begin: impl Fn(&Ray) -> V + Sync,
+        begin: impl Fn(usize, &Ray) -> V + Sync,
         answer: impl Fn(V) -> A + Sync,
     ) -> Result<(), BatchError> {
+        self.check_except(rays);
         let trip = &self.tracer.trip;
-        let begin = |ray: &Ray| ray.is_valid().then(|| begin(ray));
         let ask = |chunk: &Chunk<Ray>, answers: &mut [A]| {
             answers.fill_with(A::default);
+            let begin =
+                |place: usize, ray: &Ray| ray.is_valid().then(|| begin((chunk.index)(place), ray));
             trace(trip, chunk.queries, begin, |index, visitor| answers[index] = answer(visitor));
         };
         let reorder = self.options.reorder;
@@ -94,16 +90,12 @@ impl Batch<'_> {
         }
     }
 
-    fn sees_all(&self) -> bool {
-        self.options.visible.is_none() && self.options.except.is_none()
-    }
-
-    /// What the ray with this index sees.
-    fn seen_by(&self, index: usize) -> Only<'_, impl Fn(u32) -> bool> {
+    /// Which triangles the ray with this index sees.
+    fn accept(&self, index: usize) -> impl Fn(u32) -> bool + use<'_> {
         let except = self.options.except.map(|except| except[index]);
         let visible = self.options.visible;
-        self.tracer.only(move |triangle| {
+        move |triangle| {
             Some(triangle) != except && visible.is_none_or(|visible| visible[triangle as usize])
-        })
+        }
     }
 }

@@ -27,21 +27,27 @@ impl<'a, T> Lists<'a, T> {
 }
 
 /// Items with which a thread stops asking and waits until they are taken. So a batch holds
-/// this many a thread, and the list of one query more.
+/// this many a thread, and the lists of one group of queries more.
 const ITEMS: usize = 1 << 16;
+
+/// Queries that are asked together at first. A group grows as long as its lists are short, and
+/// shrinks, to one query in the end, if they are long.
+const GROUP: usize = 64;
 
 /// What one thread has found, and not yet handed over.
 struct Found<T> {
     first: usize,
     offsets: Vec<usize>,
     items: Vec<T>,
-    /// Those of one query.
-    list: Vec<T>,
+    /// Those of a group of queries, one by one.
+    lists: Vec<Vec<T>>,
+    group: usize,
 }
 
 impl<T: Copy> Found<T> {
     fn new() -> Self {
-        Self { first: 0, offsets: Vec::new(), items: Vec::new(), list: Vec::new() }
+        let (offsets, items, lists) = (Vec::new(), Vec::new(), Vec::new());
+        Self { first: 0, offsets, items, lists, group: GROUP }
     }
 
     fn lists(&self) -> Lists<'_, T> {
@@ -54,32 +60,61 @@ impl<T: Copy> Found<T> {
     }
 
     /// Asks from `first` on, until all `queries` are answered or there are enough items.
-    fn ask<Q>(&mut self, first: usize, queries: &[Q], ask: impl Fn(usize, &Q, &mut Vec<T>)) {
+    fn ask<Q>(&mut self, first: usize, queries: &[Q], ask: impl Fn(usize, &[Q], &mut [Vec<T>])) {
         self.first = first;
         self.items.clear();
         self.offsets.clear();
         self.offsets.push(0);
-        for (index, query) in queries.iter().enumerate() {
-            if self.items.len() >= ITEMS {
-                break;
-            }
-            ask(first + index, query, &mut self.list);
-            self.items.extend_from_slice(&self.list);
+        while self.count() < queries.len() && self.items.len() < ITEMS {
+            let rest = &queries[self.count()..];
+            self.ask_group(&rest[..self.group.min(rest.len())], &ask);
+        }
+    }
+
+    fn ask_group<Q>(&mut self, queries: &[Q], ask: impl Fn(usize, &[Q], &mut [Vec<T>])) {
+        if self.lists.len() < queries.len() {
+            self.lists.resize_with(queries.len(), Vec::new);
+        }
+        let before = self.items.len();
+        let lists = &mut self.lists[..queries.len()];
+        ask(self.first + self.offsets.len() - 1, queries, lists);
+        for list in lists {
+            self.items.append(list);
             self.offsets.push(self.items.len());
         }
+        match self.items.len() - before {
+            many if many > ITEMS / 2 => self.group = (self.group / 2).max(1),
+            few if few < ITEMS / 8 => self.group = (2 * self.group).min(CHUNK),
+            _ => {}
+        }
+        // Room that one long list took is not kept for all.
+        self.lists.iter_mut().for_each(|list| list.shrink_to(ITEMS / CHUNK));
     }
 }
 
 impl Batch<'_> {
-    /// Gives `sink` the list that `ask(i, queries[i])` makes for each query, in order, until it
-    /// breaks.
+    /// Gives `sink` the list that `ask(queries[i])` makes for each query, in order, until it breaks.
     pub(super) fn stream<Q: Sync, T: Copy + Send>(
         &self,
         queries: &[Q],
-        ask: impl Fn(usize, &Q, &mut Vec<T>) + Sync,
+        ask: impl Fn(&Q, &mut Vec<T>) + Sync,
+        sink: impl FnMut(Lists<T>) -> ControlFlow<()>,
+    ) -> Result<(), BatchError> {
+        let ask_each = |_: usize, queries: &[Q], lists: &mut [Vec<T>]| {
+            queries.iter().zip(lists).for_each(|(query, list)| ask(query, list));
+        };
+        self.stream_groups(queries, ask_each, sink)
+    }
+
+    /// The same, where `ask(i, queries[i..i + n], lists)` fills the lists of `n` queries. The lists
+    /// that it gets are empty.
+    pub(super) fn stream_groups<Q: Sync, T: Copy + Send>(
+        &self,
+        queries: &[Q],
+        ask: impl Fn(usize, &[Q], &mut [Vec<T>]) + Sync,
         mut sink: impl FnMut(Lists<T>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
-        let meter = Meter::new(&self.options, queries.len());
+        let meter = Meter::new(self, queries.len());
         let mut team: Vec<Found<T>> = (0..self.team.threads()).map(|_| Found::new()).collect();
         let round_length = CHUNK * team.len();
         for (round, queries) in queries.chunks(round_length).enumerate() {
@@ -109,7 +144,7 @@ fn hand_over<Q, T: Copy>(
     start: usize,
     queries: &[Q],
     meter: &Meter,
-    ask: impl Fn(usize, &Q, &mut Vec<T>),
+    ask: impl Fn(usize, &[Q], &mut [Vec<T>]),
     sink: &mut impl FnMut(Lists<T>) -> ControlFlow<()>,
 ) -> Result<ControlFlow<()>, BatchError> {
     let mut done = 0;
