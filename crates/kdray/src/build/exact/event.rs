@@ -1,14 +1,19 @@
-//! Events: where references end, lie flat and start along an axis \[WH06].
+//! Events: where references start, lie flat and end along an axis \[WH06].
 
 use crate::geometry::Aabb;
 
 /// What an event says of its reference. At one position events come in this order.
+///
+/// A plane that moves up along the axis passes two events of every reference: at one the reference
+/// enters the left side (odd kinds), at the other it leaves the right side. A flat reference has
+/// both at one position, and enters before it leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub(super) enum Kind {
     End = 0,
-    Planar = 1,
-    Start = 2,
+    FlatEnter = 1,
+    FlatLeave = 2,
+    Start = 3,
 }
 
 /// Position, kind and reference in 64 bits that sort as events should.
@@ -32,11 +37,6 @@ impl Event {
         Self(u64::from(ordered(position)) << 32 | (kind as u64) << 30 | u64::from(reference))
     }
 
-    #[inline(always)]
-    pub(super) fn position(self) -> f32 {
-        position_of(self.ordered_position())
-    }
-
     /// The position as an integer that compares like it.
     #[inline(always)]
     pub(super) fn ordered_position(self) -> u32 {
@@ -48,15 +48,21 @@ impl Event {
         (self.0 & REFERENCE) as usize
     }
 
-    /// 1 for a start, else 0.
+    /// Whether the reference enters the left side here; else it leaves the right side.
     #[inline(always)]
-    pub(super) fn is_start(self) -> u32 {
-        (self.0 >> 31) as u32 & 1
+    pub(super) fn enters(self) -> bool {
+        self.0 >> 30 & 1 == 1
     }
 
     #[inline(always)]
     pub(super) fn is(self, kind: Kind) -> bool {
-        (self.0 >> 30) & 3 == kind as u64
+        self.0 >> 30 & 3 == kind as u64
+    }
+
+    /// Whether the reference is flat.
+    #[inline(always)]
+    pub(super) fn is_flat(self) -> bool {
+        matches!(self.0 >> 30 & 3, 1 | 2)
     }
 
     /// Position and kind: what the order of a list depends on.
@@ -72,16 +78,16 @@ impl Event {
     }
 }
 
-/// The events of a reference along `axis`: one if it is flat there, else two.
+/// The two events of a reference along `axis`.
 #[inline(always)]
-pub(super) fn events_of(bounds: &Aabb, axis: usize, reference: u32) -> (Event, Option<Event>) {
+pub(super) fn events_of(bounds: &Aabb, axis: usize, reference: u32) -> [Event; 2] {
     let (lower, upper) = (bounds.lower[axis], bounds.upper[axis]);
-    if lower == upper {
-        (Event::new(lower, Kind::Planar, reference), None)
+    let kinds = if lower == upper {
+        [Kind::FlatEnter, Kind::FlatLeave]
     } else {
-        let end = Event::new(upper, Kind::End, reference);
-        (Event::new(lower, Kind::Start, reference), Some(end))
-    }
+        [Kind::Start, Kind::End]
+    };
+    [Event::new(lower, kinds[0], reference), Event::new(upper, kinds[1], reference)]
 }
 
 /// Bits that compare, as an unsigned integer, like the number.
@@ -119,14 +125,15 @@ mod tests {
     #[test]
     fn an_event_keeps_what_it_was_made_of() {
         let event = Event::new(-2.5, Kind::Start, 77);
-        assert_eq!((event.position(), event.reference()), (-2.5, 77));
-        assert!(event.is(Kind::Start) && event.is_start() == 1);
+        assert_eq!((position_of(event.ordered_position()), event.reference()), (-2.5, 77));
+        assert!(event.enters() && !event.is_flat());
         assert_eq!(event.renamed(5), Event::new(-2.5, Kind::Start, 5));
     }
 
     #[test]
-    fn at_one_position_ends_come_before_planars_before_starts() {
+    fn at_one_position_flat_references_enter_and_leave_between_ends_and_starts() {
         let at = |kind| Event::new(1.0, kind, 9).order();
-        assert!(at(Kind::End) < at(Kind::Planar) && at(Kind::Planar) < at(Kind::Start));
+        let orders = [Kind::End, Kind::FlatEnter, Kind::FlatLeave, Kind::Start].map(at);
+        assert!(orders.is_sorted_by(|a, b| a < b), "{orders:?}");
     }
 }

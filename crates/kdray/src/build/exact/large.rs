@@ -113,10 +113,10 @@ fn split(
         workspace.bytes().saturating_sub(Workspace::bytes_for(set.triangles.len()));
     context.meter.charge("clip", straddler_bytes)?;
     let lists = left.events_mut().into_iter().zip(right.events_mut());
-    let mut axes: Vec<_> = lists.enumerate().map(|(axis, lists)| (axis, lists, [0; 2])).collect();
+    let mut axes: Vec<_> = lists.enumerate().collect();
     let workspace = &workspace;
-    let split_axis = |(axis, (left, right), lengths): &mut (usize, (&mut [_], &mut [_]), _)| {
-        *lengths = workspace.split_axis(*axis, set.events[*axis], [left, right]);
+    let split_axis = |(axis, (left, right)): &mut (usize, (&mut [_], &mut [_]))| {
+        workspace.split_axis(*axis, set.events[*axis], [left, right]);
     };
     if context.limits.threads > 1 {
         use rayon::prelude::*;
@@ -124,9 +124,8 @@ fn split(
     } else {
         axes.iter_mut().for_each(split_axis);
     }
-    let lengths = [0, 1, 2].map(|axis: usize| axes[axis].2);
-    left.truncate(sizes.left, lengths.map(|[left, _]| left));
-    right.truncate(sizes.right, lengths.map(|[_, right]| right));
+    left.truncate(sizes.left);
+    right.truncate(sizes.right);
     context.meter.release(straddler_bytes);
     let [left_bytes, right_bytes] = bytes;
     Ok([Booked { set: left, bytes: left_bytes }, Booked { set: right, bytes: right_bytes }])

@@ -7,11 +7,16 @@
 //! memory that stays in the cache.
 
 mod event;
+mod columns;
+mod lanes;
 mod large;
+mod partition;
+mod pricing;
 mod set;
 mod small;
 mod split;
 mod sweep;
+mod tiny;
 
 use std::sync::Mutex;
 

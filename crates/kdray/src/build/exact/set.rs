@@ -1,6 +1,7 @@
 //! What the builder knows of a node: its references, and their events in order.
 
 use super::event::{Event, events_of};
+use super::partition::SPARE;
 use crate::geometry::{Aabb, Mesh};
 use crate::memory::{with_huge_pages, zeros_in_huge_pages};
 
@@ -9,11 +10,11 @@ use crate::memory::{with_huge_pages, zeros_in_huge_pages};
 #[derive(Clone, Copy)]
 pub(super) struct Set<'a> {
     pub(super) triangles: &'a [u32],
-    /// By axis, sorted by position and kind.
+    /// By axis, sorted by position and kind: two of every reference.
     pub(super) events: [&'a [Event]; 3],
 }
 
-/// Room for the references of a node, with one place to spare in every list (see `split`).
+/// Room for the references of a node, with places to spare in every list (see `partition`).
 pub(super) struct Room<'a> {
     pub(super) triangles: &'a mut [u32],
     pub(super) events: [&'a mut [Event]; 3],
@@ -27,13 +28,13 @@ pub(super) struct OwnedSet {
 
 /// Events and triangles that [`Room`] for `count` references takes.
 pub(super) const fn room_sizes(count: usize) -> (usize, usize) {
-    (3 * (2 * count + 1), count + 1)
+    (3 * (2 * count + SPARE), count + 1)
 }
 
 impl OwnedSet {
     /// Empty lists with room for `count` references.
     pub(super) fn with_room(count: usize) -> Self {
-        let events = || zeros_in_huge_pages(2 * count + 1);
+        let events = || zeros_in_huge_pages(2 * count + SPARE);
         Self { triangles: zeros_in_huge_pages(count + 1), events: [events(), events(), events()] }
     }
 
@@ -53,11 +54,9 @@ impl OwnedSet {
     }
 
     /// Cuts the lists to what was filled.
-    pub(super) fn truncate(&mut self, count: usize, events: [usize; 3]) {
+    pub(super) fn truncate(&mut self, count: usize) {
         self.triangles.truncate(count);
-        for axis in 0..3 {
-            self.events[axis].truncate(events[axis]);
-        }
+        self.events.iter_mut().for_each(|events| events.truncate(2 * count));
     }
 
     pub(super) fn as_set(&self) -> Set<'_> {
@@ -76,9 +75,7 @@ pub(super) fn sorted_events(mesh: &Mesh, axis: usize) -> Vec<Event> {
     let mut events = with_huge_pages(2 * mesh.triangles().len());
     for triangle in 0..mesh.triangles().len() {
         let bounds = Aabb::of_points(&mesh.triangle(triangle));
-        let (first, second) = events_of(&bounds, axis, triangle as u32);
-        events.push(first);
-        events.extend(second);
+        events.extend(events_of(&bounds, axis, triangle as u32));
     }
     events.sort_unstable();
     events
@@ -88,20 +85,17 @@ impl<'a> Room<'a> {
     /// Room for `count` references at the start of `scratch`, and the rest of it.
     pub(super) fn carve(scratch: Scratch<'a>, count: usize) -> (Self, Scratch<'a>) {
         let (triangles, free_triangles) = scratch.triangles.split_at_mut(count + 1);
-        let (x, rest) = scratch.events.split_at_mut(2 * count + 1);
-        let (y, rest) = rest.split_at_mut(2 * count + 1);
-        let (z, free_events) = rest.split_at_mut(2 * count + 1);
+        let (x, rest) = scratch.events.split_at_mut(2 * count + SPARE);
+        let (y, rest) = rest.split_at_mut(2 * count + SPARE);
+        let (z, free_events) = rest.split_at_mut(2 * count + SPARE);
         let free = Scratch { triangles: free_triangles, events: free_events };
         (Self { triangles, events: [x, y, z] }, free)
     }
 
     /// What was filled.
-    pub(super) fn into_set(self, count: usize, events: [usize; 3]) -> Set<'a> {
-        let [x, y, z] = self.events;
-        Set {
-            triangles: &self.triangles[..count],
-            events: [&x[..events[0]], &y[..events[1]], &z[..events[2]]],
-        }
+    pub(super) fn into_set(self, count: usize) -> Set<'a> {
+        let events = self.events.map(|events| &events[..2 * count]);
+        Set { triangles: &self.triangles[..count], events }
     }
 }
 

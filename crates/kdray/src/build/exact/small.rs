@@ -4,6 +4,7 @@ use super::event::Event;
 use super::set::{Room, Scratch, Set, room_sizes};
 use super::split::Workspace;
 use super::sweep::{cheapest, sweep};
+use super::tiny::{TINY, Tiny};
 use super::{BuildError, Context, Growth, Node};
 use crate::memory::zeros_in_huge_pages;
 
@@ -11,6 +12,7 @@ use crate::memory::zeros_in_huge_pages;
 #[derive(Default)]
 pub(super) struct Small {
     workspace: Workspace,
+    tiny: Tiny,
     events: Vec<Event>,
     triangles: Vec<u32>,
     /// Bytes that were booked for the workspace.
@@ -30,11 +32,13 @@ pub(super) fn build(context: &Context, set: Set, node: Node) -> Result<Growth, B
     small.reserve(context, set.triangles.len())?;
     let mut growth = Growth::default();
     let scratch = Scratch { triangles: &mut small.triangles, events: &mut small.events };
-    let mut subtree = Subtree { context, workspace: &mut small.workspace, growth: &mut growth };
+    let (workspace, tiny) = (&mut small.workspace, &mut small.tiny);
+    let mut subtree = Subtree { context, workspace, tiny, growth: &mut growth };
     subtree.node(set, node, scratch)?;
     // The workspace grows with the straddlers, which nobody knew before.
-    context.meter.charge("clip", small.workspace.bytes() - small.booked)?;
-    small.booked = small.workspace.bytes();
+    let bytes = small.workspace.bytes() + small.tiny.bytes();
+    context.meter.charge("clip", bytes - small.booked)?;
+    small.booked = bytes;
     idle().push(small);
     context.meter.charge("tree", growth.capacity_bytes())?;
     context.meter.advance(node.share);
@@ -66,12 +70,17 @@ impl Small {
 struct Subtree<'a> {
     context: &'a Context<'a>,
     workspace: &'a mut Workspace,
+    tiny: &'a mut Tiny,
     growth: &'a mut Growth,
 }
 
 impl Subtree<'_> {
     fn node(&mut self, set: Set, node: Node, mut scratch: Scratch) -> Result<(), BuildError> {
         let count = set.triangles.len();
+        if count <= TINY {
+            self.tiny.build(self.context, self.growth, &set, node);
+            return Ok(());
+        }
         let Some(cost) = self.context.prices(&node, count) else {
             self.growth.push_leaf(set.triangles);
             return Ok(());
@@ -128,14 +137,11 @@ impl Subtree<'_> {
         let (left_room, scratch) = Room::carve(scratch, left);
         let (right_room, scratch) = Room::carve(scratch, right);
         self.workspace.name(set, [left_room.triangles, right_room.triangles]);
-        let mut lengths = [[0; 3]; 2];
         for axis in 0..3 {
             let lists = [&mut *left_room.events[axis], &mut *right_room.events[axis]];
-            [lengths[0][axis], lengths[1][axis]] =
-                self.workspace.split_axis(axis, set.events[axis], lists);
+            self.workspace.split_axis(axis, set.events[axis], lists);
         }
-        let sets = [left_room.into_set(left, lengths[0]), right_room.into_set(right, lengths[1])];
-        (sets, scratch)
+        ([left_room.into_set(left), right_room.into_set(right)], scratch)
     }
 }
 

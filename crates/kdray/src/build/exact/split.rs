@@ -2,38 +2,41 @@
 //!
 //! Events keep their order, because every list is split from front to back. Only straddlers
 //! get new bounds, so only their events are made anew; they are sorted among themselves and merged
-//! into the lists while these are split (\[WH06], section 4.3).
+//! into the lists once these are split (\[WH06], section 4.3).
 
 use super::Context;
-use super::event::{Event, Kind, events_of};
+use super::event::{Event, Kind, events_of, ordered};
+use super::partition::{TO_NONE, TO_RIGHT, merge, partition};
 use super::set::Set;
 use super::sweep::Candidate;
 use crate::build::NodeCost;
 use crate::build::plane::{Plane, Side};
 use crate::geometry::Aabb;
 
-/// The child that a reference goes to, as a byte.
-const LEFT: u8 = 0;
-const RIGHT: u8 = 1;
-const BOTH: u8 = 2;
-
-/// A reference's name in its child, with the child in the two highest bits.
-const TO_RIGHT: u32 = 1 << 30;
-const TO_NONE: u32 = 1 << 31;
+/// The children that a reference reaches, as the bits of a byte.
+const LEFT: u8 = 1;
+const RIGHT: u8 = 2;
+const BOTH: u8 = LEFT | RIGHT;
+/// The bit of straddlers, whose parts reach the children.
+const IN_PARTS: u8 = 4;
 
 /// Memory that is used again from node to node.
 #[derive(Default)]
 pub(super) struct Workspace {
     sides: Vec<u8>,
     names: Vec<u32>,
-    /// Of the straddlers, in order.
-    parts: Vec<Parts>,
+    straddlers: Vec<Straddler>,
     /// By child and axis: the events of its new parts.
     fresh: [[Vec<Event>; 3]; 2],
 }
 
-/// Bounds of a straddler's parts on the two sides of the plane.
-type Parts = [Option<Aabb>; 2];
+/// A reference on both sides of the plane.
+#[derive(Clone, Copy)]
+struct Straddler {
+    reference: u32,
+    /// Bounds of its parts on the two sides.
+    parts: [Option<Aabb>; 2],
+}
 
 /// How many references the children get.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +59,7 @@ impl Workspace {
         let fresh: usize = self.fresh.as_flattened().iter().map(Vec::capacity).sum();
         self.sides.capacity()
             + self.names.capacity() * size_of::<u32>()
-            + self.parts.capacity() * size_of::<Parts>()
+            + self.straddlers.capacity() * size_of::<Straddler>()
             + fresh * size_of::<Event>()
     }
 
@@ -74,51 +77,53 @@ impl Workspace {
         cost: &NodeCost,
         context: &Context,
     ) -> Sizes {
-        let events = set.events[candidate.axis];
-        let plane = with_flat_side(events, set.triangles.len(), bounds, candidate, cost);
-        self.mark_sides(events, set.triangles.len(), &plane);
+        let count = set.triangles.len();
+        let by_place = ByPlace::new(set.events[candidate.axis], candidate.position);
+        let plane = with_flat_side(&by_place, count, bounds, candidate, cost);
+        self.mark_sides(&by_place, count, plane.flat);
+        self.find_straddlers(count);
         self.clip_straddlers(set, bounds, &plane, context);
-        let sides = &self.sides[..set.triangles.len()];
-        let left = sides.iter().filter(|side| **side == LEFT).count();
-        let straddlers = self.parts.len();
-        let part_count =
-            |side: usize| self.parts.iter().filter(|parts| parts[side].is_some()).count();
-        let right = sides.len() - left - straddlers;
-        Sizes { left: left + part_count(0), right: right + part_count(1), straddlers }
+        let sides = &self.sides[..count];
+        let reached = |side: u8| sides.iter().map(|reach| usize::from(reach & side != 0)).sum();
+        Sizes { left: reached(LEFT), right: reached(RIGHT), straddlers: self.straddlers.len() }
     }
 
-    fn mark_sides(&mut self, events: &[Event], count: usize, plane: &Plane) {
+    fn mark_sides(&mut self, by_place: &ByPlace, count: usize, flat: Side) {
         // The last place takes the marks that say nothing.
         self.sides.clear();
         self.sides.resize(count + 1, BOTH);
-        let ordered = super::event::ordered(plane.position);
-        let until = events.partition_point(|event| event.ordered_position() <= ordered);
-        for event in &events[..until] {
-            let place = if event.is(Kind::End) { event.reference() } else { count };
+        for event in by_place.below {
+            let place = if event.enters() { count } else { event.reference() };
             self.sides[place] = LEFT;
         }
-        let from = events.partition_point(|event| event.ordered_position() < ordered);
-        for event in &events[from..] {
-            let place = if event.is(Kind::Start) { event.reference() } else { count };
+        for event in by_place.above {
+            let place = if event.enters() { event.reference() } else { count };
             self.sides[place] = RIGHT;
         }
-        if events.len() != 2 * count {
-            let flat = if plane.flat == Side::Left { LEFT } else { RIGHT };
-            for (index, event) in events.iter().enumerate().filter(|e| e.1.is(Kind::Planar)) {
-                let beyond = if index < until { flat } else { RIGHT };
-                self.sides[event.reference()] = if index < from { LEFT } else { beyond };
+        let of_flat = if flat == Side::Left { LEFT } else { RIGHT };
+        for event in by_place.at {
+            let beyond = if event.enters() { RIGHT } else { LEFT };
+            self.sides[event.reference()] = if event.is_flat() { of_flat } else { beyond };
+        }
+    }
+
+    fn find_straddlers(&mut self, count: usize) {
+        self.straddlers.clear();
+        for (reference, side) in self.sides[..count].iter().enumerate() {
+            if *side == BOTH {
+                self.straddlers.push(Straddler { reference: reference as u32, parts: [None; 2] });
             }
         }
     }
 
     fn clip_straddlers(&mut self, set: &Set, bounds: &Aabb, plane: &Plane, context: &Context) {
         let children = bounds.cut(plane.axis, plane.position);
-        self.parts.clear();
-        for (reference, triangle) in set.triangles.iter().enumerate() {
-            if self.sides[reference] == BOTH {
-                let corners = context.mesh.triangle(*triangle as usize);
-                self.parts.push(children.map(|child| context.limits.part(&corners, &child)));
-            }
+        for Straddler { reference, parts } in &mut self.straddlers {
+            let triangle = set.triangles[*reference as usize];
+            let corners = context.mesh.triangle(triangle as usize);
+            *parts = children.map(|child| context.limits.part(&corners, &child));
+            let [left, right] = parts.map(|part| u8::from(part.is_some()));
+            self.sides[*reference as usize] = IN_PARTS | left * LEFT | right * RIGHT;
         }
     }
 
@@ -128,127 +133,82 @@ impl Workspace {
         self.names.resize(set.triangles.len(), TO_NONE);
         self.fresh.iter_mut().flatten().for_each(Vec::clear);
         let (mut lefts, mut rights) = (0, 0);
-        let mut parts = self.parts.iter();
-        for (reference, triangle) in set.triangles.iter().enumerate() {
-            let side = self.sides[reference];
+        let mut straddlers = self.straddlers.iter();
+        let references = set.triangles.iter().zip(&self.sides).zip(&mut self.names);
+        for ((triangle, side), name) in references {
             // Both places are free; the one that is not meant is written again.
             left[lefts] = *triangle;
             right[rights] = *triangle;
-            if side == BOTH {
-                let [below, above] = parts.next().expect("every straddler was clipped");
-                lefts += push_events(&mut self.fresh[0], below.as_ref(), lefts as u32);
-                rights += push_events(&mut self.fresh[1], above.as_ref(), rights as u32);
+            if *side & IN_PARTS == 0 {
+                *name = if *side == LEFT { lefts as u32 } else { rights as u32 | TO_RIGHT };
             } else {
-                let name = if side == LEFT { lefts as u32 } else { rights as u32 | TO_RIGHT };
-                self.names[reference] = name;
-                lefts += usize::from(side == LEFT);
-                rights += usize::from(side == RIGHT);
+                let [below, above] = straddlers.next().expect("every straddler is known").parts;
+                push_events(&mut self.fresh[0], below.as_ref(), lefts as u32);
+                push_events(&mut self.fresh[1], above.as_ref(), rights as u32);
             }
+            lefts += usize::from(side & LEFT != 0);
+            rights += usize::from(side & RIGHT != 0);
         }
         self.fresh.iter_mut().flatten().for_each(|events| events.sort_unstable());
     }
 
-    /// Splits the events of one axis into the lists of the children; gives the lists' lengths.
+    /// Splits the events of one axis into the lists of the children.
     pub(super) fn split_axis(
         &self,
         axis: usize,
-        old: &[Event],
+        events: &[Event],
         [left, right]: [&mut [Event]; 2],
-    ) -> [usize; 2] {
-        let mut lists = Lists { left, right, lengths: [0, 0] };
-        let mut old = old;
-        let (mut new_left, mut new_right) = (&self.fresh[0][axis][..], &self.fresh[1][axis][..]);
-        loop {
-            // The next new event of either child, and the old ones that come before it.
-            let next = match (new_left.first(), new_right.first()) {
-                (Some(left), Some(right)) => left.order().min(right.order()),
-                (Some(only), None) | (None, Some(only)) => only.order(),
-                (None, None) => break,
-            };
-            let before = old.iter().take_while(|event| event.order() < next).count();
-            lists.distribute(&old[..before], &self.names);
-            old = &old[before..];
-            lists.append(0, &mut new_left, next);
-            lists.append(1, &mut new_right, next);
-        }
-        lists.distribute(old, &self.names);
-        lists.lengths
+    ) {
+        let [lefts, rights] = partition(events, &self.names, [left, right]);
+        merge(left, lefts, &self.fresh[0][axis]);
+        merge(right, rights, &self.fresh[1][axis]);
     }
 }
 
-/// The lists of one axis in the two children, as they fill.
-struct Lists<'a> {
-    left: &'a mut [Event],
-    right: &'a mut [Event],
-    lengths: [usize; 2],
-}
-
-impl Lists<'_> {
-    /// Sends every event where its reference went. Branch-free: both lists are written at their
-    /// end, and the one that gets the event grows. That is why lists have a place to spare.
-    #[inline(always)]
-    fn distribute(&mut self, events: &[Event], names: &[u32]) {
-        let [mut lefts, mut rights] = self.lengths;
-        for event in events {
-            let name = names[event.reference()];
-            let renamed = event.renamed(name);
-            self.left[lefts] = renamed;
-            self.right[rights] = renamed;
-            lefts += usize::from(name < TO_RIGHT);
-            rights += usize::from(name & (TO_RIGHT | TO_NONE) == TO_RIGHT);
-        }
-        self.lengths = [lefts, rights];
-    }
-
-    /// Appends the first of `fresh` to the list of `child` if it is at `order`.
-    fn append(&mut self, child: usize, fresh: &mut &[Event], order: u64) {
-        while let Some((first, rest)) = fresh.split_first() {
-            if first.order() != order {
-                break;
-            }
-            let list = if child == 0 { &mut *self.left } else { &mut *self.right };
-            list[self.lengths[child]] = *first;
-            self.lengths[child] += 1;
-            *fresh = rest;
-        }
-    }
-}
-
-/// Adds the events of a part under its name in the child; gives 1, or 0 if there is no part.
-fn push_events(fresh: &mut [Vec<Event>; 3], part: Option<&Aabb>, name: u32) -> usize {
-    let Some(part) = part else { return 0 };
+/// Adds the events of a part under its name in the child.
+fn push_events(fresh: &mut [Vec<Event>; 3], part: Option<&Aabb>, name: u32) {
+    let Some(part) = part else { return };
     for axis in 0..3 {
-        let (first, second) = events_of(part, axis, name);
-        fresh[axis].push(first);
-        fresh[axis].extend(second);
+        fresh[axis].extend(events_of(part, axis, name));
     }
-    1
+}
+
+/// The events along a plane's axis, by where they are.
+struct ByPlace<'a> {
+    below: &'a [Event],
+    at: &'a [Event],
+    above: &'a [Event],
+}
+
+impl<'a> ByPlace<'a> {
+    fn new(events: &'a [Event], position: f32) -> Self {
+        let position = ordered(position);
+        let (below, rest) =
+            events.split_at(events.partition_point(|event| event.ordered_position() < position));
+        // They are few, mostly one.
+        let at = rest.iter().take_while(|event| event.ordered_position() == position).count();
+        let (at, above) = rest.split_at(at);
+        Self { below, at, above }
+    }
 }
 
 /// The plane of `candidate`, with its flat references on the cheaper side (left on a tie).
 fn with_flat_side(
-    events: &[Event],
+    by_place: &ByPlace,
     count: usize,
     bounds: &Aabb,
     candidate: &Candidate,
     cost: &NodeCost,
 ) -> Plane {
     let Candidate { axis, position, .. } = *candidate;
-    if events.len() == 2 * count {
+    let of_kind = |kind| by_place.at.iter().filter(|event| event.is(kind)).count() as i32;
+    let flat = of_kind(Kind::FlatEnter);
+    if flat == 0 {
         return Plane { axis, position, flat: Side::Left };
     }
-    let (mut left, mut flat, mut right) = (0, 0, count as i32);
-    for event in events.iter().take_while(|event| event.position() <= position) {
-        let at_plane = event.position() == position;
-        match (event.is(Kind::Planar), event.is(Kind::End)) {
-            (true, _) if at_plane => flat += 1,
-            (true, _) => (left, right) = (left + 1, right - 1),
-            (_, true) => right -= 1,
-            _ if at_plane => {}
-            _ => left += 1,
-        }
-    }
-    right -= flat;
+    let left = by_place.below.iter().map(|event| i32::from(event.enters())).sum::<i32>();
+    let gone = by_place.below.len() as i32 - left + of_kind(Kind::End);
+    let right = count as i32 - gone - flat;
     let distances = [position - bounds.lower[axis], bounds.upper[axis] - position];
     let price_left = cost.split(axis, distances, [left + flat, right]);
     let price_right = cost.split(axis, distances, [left, right + flat]);

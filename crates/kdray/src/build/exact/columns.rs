@@ -1,0 +1,251 @@
+//! A few references, column by column.
+
+use super::lanes::{LANES, Lanes, Plain};
+#[cfg(target_arch = "x86_64")]
+use super::lanes::{Avx2, detect};
+use super::pricing::Pricing;
+use super::set::Set;
+use super::sweep::Candidate;
+use crate::build::NodeCost;
+use crate::build::plane::Plane;
+use crate::geometry::Aabb;
+use super::event::position_of;
+
+/// The most references that columns hold; half as many more would be counted in twice the time.
+pub(super) const MOST: usize = 32;
+
+/// References of a node: triangles, which ascend, and bounds. Where there is no reference, bounds
+/// are empty.
+#[derive(Clone)]
+#[repr(C, align(64))]
+pub(super) struct Columns {
+    pub(super) triangles: [u32; MOST],
+    /// By axis.
+    lower: [[f32; MOST]; 3],
+    upper: [[f32; MOST]; 3],
+}
+
+/// Counts at the planes in the bounds of columns, which only depend on these.
+#[derive(Clone)]
+pub(super) struct Counts {
+    /// By axis, end (lower, upper) and reference.
+    at: [[[Count; MOST / LANES]; 2]; 3],
+    has_flat: [bool; 3],
+}
+
+/// References on the sides of eight planes.
+#[derive(Clone, Copy, Default)]
+struct Count {
+    left: [i32; LANES],
+    flat: [i32; LANES],
+    right: [i32; LANES],
+}
+
+impl Columns {
+    pub(super) const EMPTY: Self = Self {
+        triangles: [0; MOST],
+        lower: [[f32::INFINITY; MOST]; 3],
+        upper: [[f32::NEG_INFINITY; MOST]; 3],
+    };
+
+    /// The references of a set of at most [`MOST`].
+    pub(super) fn fill(&mut self, set: &Set) {
+        let count = set.triangles.len();
+        self.triangles[..count].copy_from_slice(set.triangles);
+        for axis in 0..3 {
+            self.lower[axis] = [f32::INFINITY; MOST];
+            self.upper[axis] = [f32::NEG_INFINITY; MOST];
+            for event in set.events[axis] {
+                let position = position_of(event.ordered_position());
+                let ends = [&mut self.upper[axis], &mut self.lower[axis]];
+                ends[usize::from(event.enters())][event.reference()] = position;
+            }
+        }
+    }
+
+    /// The references that reach the left and the right side of a plane, as bits.
+    pub(super) fn reach(&self, count: usize, plane: &Plane) -> [u32; 2] {
+        use crate::build::plane::Side;
+        let (mut left, mut right, mut flat) = (0_u32, 0_u32, 0_u32);
+        let (lower, upper) = (&self.lower[plane.axis], &self.upper[plane.axis]);
+        for reference in 0..count {
+            let is_left = lower[reference] < plane.position;
+            let is_right = upper[reference] > plane.position;
+            left |= u32::from(is_left) << reference;
+            right |= u32::from(is_right) << reference;
+            flat |= u32::from(!is_left & !is_right) << reference;
+        }
+        if plane.flat == Side::Left { [left | flat, right] } else { [left, right | flat] }
+    }
+
+    /// Writes the references whose bit is set to `kept`.
+    pub(super) fn keep(&self, bits: u32, kept: &mut Self) {
+        let mut places = [0_u8; MOST];
+        let (mut count, mut rest) = (0, bits);
+        while rest != 0 {
+            places[count] = rest.trailing_zeros() as u8;
+            rest &= rest - 1;
+            count += 1;
+        }
+        let padded = count.next_multiple_of(LANES);
+        for (to, from) in places[..count].iter().enumerate() {
+            kept.triangles[to] = self.triangles[usize::from(*from)];
+        }
+        for axis in 0..3 {
+            for (to, from) in places[..count].iter().enumerate() {
+                kept.lower[axis][to] = self.lower[axis][usize::from(*from)];
+                kept.upper[axis][to] = self.upper[axis][usize::from(*from)];
+            }
+            kept.lower[axis][count..padded].fill(f32::INFINITY);
+            kept.upper[axis][count..padded].fill(f32::NEG_INFINITY);
+        }
+    }
+
+    pub(super) fn set_bounds(&mut self, place: usize, bounds: &Aabb) {
+        for axis in 0..3 {
+            self.lower[axis][place] = bounds.lower[axis];
+            self.upper[axis][place] = bounds.upper[axis];
+        }
+    }
+
+    /// Counts the references on the sides of the planes in the bounds of the first `count`.
+    pub(super) fn count(&self, count: usize, counts: &mut Counts) {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(lanes) = detect() {
+            // SAFETY: `lanes` is proof that the processor has AVX2.
+            return unsafe { count_avx2(lanes, self, count, counts) };
+        }
+        count_with(Plain, self, count, counts);
+    }
+
+    /// The cheapest plane along each axis.
+    pub(super) fn cheapest(
+        &self,
+        count: usize,
+        counts: &Counts,
+        bounds: &Aabb,
+        cost: &NodeCost,
+    ) -> [Option<Candidate>; 3] {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(lanes) = detect() {
+            // SAFETY: `lanes` is proof that the processor has AVX2.
+            return unsafe { cheapest_avx2(lanes, self, count, counts, bounds, cost) };
+        }
+        cheapest_with(Plain, self, count, counts, bounds, cost)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn count_avx2(lanes: Avx2, columns: &Columns, count: usize, counts: &mut Counts) {
+    count_with(lanes, columns, count, counts);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn cheapest_avx2(
+    lanes: Avx2,
+    columns: &Columns,
+    count: usize,
+    counts: &Counts,
+    bounds: &Aabb,
+    cost: &NodeCost,
+) -> [Option<Candidate>; 3] {
+    cheapest_with(lanes, columns, count, counts, bounds, cost)
+}
+
+// No closures below: they are not compiled for the processor that their function is for.
+
+#[inline(always)]
+fn count_with<L: Lanes>(lanes: L, columns: &Columns, count: usize, counts: &mut Counts) {
+    let count = count.min(MOST);
+    for axis in 0..3 {
+        let (lower, upper) = (&columns.lower[axis], &columns.upper[axis]);
+        let mut flat_bits = 0;
+        for group in 0..count.div_ceil(LANES) {
+            let [starts, ends] = [group_of(lanes, lower, group), group_of(lanes, upper, group)];
+            flat_bits |= lanes.bits(lanes.is_equal(starts, ends));
+            let none = lanes.counts(0);
+            let [mut at_start, mut at_end] = [[none; 2]; 2];
+            for reference in 0..count {
+                let (first, last) =
+                    (lanes.numbers(lower[reference]), lanes.numbers(upper[reference]));
+                at_start[0] = lanes.count(at_start[0], lanes.is_less(first, starts));
+                at_start[1] = lanes.count(at_start[1], lanes.is_less(starts, last));
+                at_end[0] = lanes.count(at_end[0], lanes.is_less(first, ends));
+                at_end[1] = lanes.count(at_end[1], lanes.is_less(ends, last));
+            }
+            counts.at[axis][0][group].left = lanes.store_counts(at_start[0]);
+            counts.at[axis][0][group].right = lanes.store_counts(at_start[1]);
+            counts.at[axis][1][group].left = lanes.store_counts(at_end[0]);
+            counts.at[axis][1][group].right = lanes.store_counts(at_end[1]);
+        }
+        counts.has_flat[axis] = flat_bits != 0;
+        if flat_bits != 0 {
+            count_flat(lanes, [lower, upper], count, &mut counts.at[axis]);
+        }
+    }
+}
+
+#[inline(always)]
+fn group_of<L: Lanes>(lanes: L, column: &[f32; MOST], group: usize) -> L::Numbers {
+    lanes.load(&column.as_chunks().0[group])
+}
+
+#[inline(always)]
+fn count_flat<L: Lanes>(
+    lanes: L,
+    [lower, upper]: [&[f32; MOST]; 2],
+    count: usize,
+    counts: &mut [[Count; MOST / LANES]; 2],
+) {
+    for (end, planes) in [lower, upper].into_iter().enumerate() {
+        for group in 0..count.div_ceil(LANES) {
+            let planes = group_of(lanes, planes, group);
+            let mut flat = lanes.counts(0);
+            for reference in 0..count {
+                let first = lanes.is_equal(lanes.numbers(lower[reference]), planes);
+                let last = lanes.is_equal(lanes.numbers(upper[reference]), planes);
+                flat = lanes.count(flat, lanes.and(first, last));
+            }
+            counts[end][group].flat = lanes.store_counts(flat);
+        }
+    }
+}
+
+#[inline(always)]
+fn cheapest_with<L: Lanes>(
+    lanes: L,
+    columns: &Columns,
+    count: usize,
+    counts: &Counts,
+    bounds: &Aabb,
+    cost: &NodeCost,
+) -> [Option<Candidate>; 3] {
+    let mut best = [None; 3];
+    for (axis, best) in best.iter_mut().enumerate() {
+        let mut pricing = Pricing::new(lanes, bounds, cost, axis);
+        for (end, ends) in [&columns.lower[axis], &columns.upper[axis]].into_iter().enumerate() {
+            for group in 0..count.min(MOST).div_ceil(LANES) {
+                let planes = group_of(lanes, ends, group);
+                let at = &counts.at[axis][end][group];
+                let (left, right) = (lanes.load_counts(&at.left), lanes.load_counts(&at.right));
+                if counts.has_flat[axis] {
+                    let flat = lanes.load_counts(&at.flat);
+                    pricing.price_unordered(planes, lanes.sum(left, flat), right);
+                    pricing.price_unordered(planes, left, lanes.sum(right, flat));
+                } else {
+                    pricing.price_unordered(planes, left, right);
+                }
+            }
+        }
+        *best = pricing.best();
+    }
+    best
+}
+
+impl Default for Counts {
+    fn default() -> Self {
+        Self { at: [[[Count::default(); MOST / LANES]; 2]; 3], has_flat: [false; 3] }
+    }
+}
