@@ -13,6 +13,7 @@
 //! of the triangle inside the box gives its exact coordinate, and a flat triangle stays flat.
 
 use super::Aabb;
+use super::corner::Corner;
 
 /// A triangle cut by six planes has at most nine corners; rounding can give a sliver a few more.
 const MAX_CORNERS: usize = 12;
@@ -23,30 +24,29 @@ const HALF_ULP: f32 = f32::EPSILON * 0.5;
 /// Bounds of the part of `triangle` inside `bounds`, or `None` if there is no such part.
 #[must_use]
 pub fn clip(triangle: &[[f32; 3]; 3], bounds: &Aabb) -> Option<Aabb> {
-    let whole = Aabb::of_points(triangle);
-    let margin = margin(&whole, bounds);
-    let mut polygon = Polygon::new(triangle);
-    for axis in 0..3 {
-        if whole.lower[axis] < bounds.lower[axis] {
-            polygon.cut(axis, bounds.lower[axis] - margin, |value, plane| value >= plane);
+    let [a, b, c] = triangle.map(Corner::new);
+    let whole = [a.min(b).min(c), a.max(b).max(c)];
+    let [lower, upper] = [bounds.lower, bounds.upper].map(Corner::new);
+    let (below, above) = (whole[0].is_less(lower), upper.is_less(whole[1]));
+    let margin = margin(whole, (below.count_ones() + above.count_ones()) as i32);
+    let mut part = whole;
+    if below | above != 0 {
+        let mut polygon = Polygon::new([a, b, c]);
+        let planes = [lower.minus(margin), upper.plus(margin)];
+        polygon.cut::<0>([below, above], planes);
+        polygon.cut::<1>([below, above], planes);
+        polygon.cut::<2>([below, above], planes);
+        if polygon.overflowed {
+            return overlap(triangle, bounds);
         }
-        if whole.upper[axis] > bounds.upper[axis] {
-            polygon.cut(axis, bounds.upper[axis] + margin, |value, plane| value <= plane);
-        }
+        part = polygon.bounds();
     }
-    if polygon.overflowed {
-        return overlap(triangle, bounds);
-    }
-    let part = polygon.bounds();
-    let mut clipped = Aabb::EMPTY;
-    for axis in 0..3 {
-        let lower = part.lower[axis] - margin;
-        let upper = part.upper[axis] + margin;
-        // Adding zero turns -0 into +0: events compare bits.
-        clipped.lower[axis] = lower.max(whole.lower[axis]).max(bounds.lower[axis]) + 0.0;
-        clipped.upper[axis] = upper.min(whole.upper[axis]).min(bounds.upper[axis]) + 0.0;
-    }
-    (!clipped.is_empty()).then_some(clipped)
+    let zero = Corner::all(0.0);
+    // Adding zero turns -0 into +0: events compare bits.
+    let first = part[0].minus(margin).max(whole[0]).max(lower).plus(zero);
+    let last = part[1].plus(margin).min(whole[1]).min(upper).plus(zero);
+    let clipped = Aabb { lower: first.coordinates(), upper: last.coordinates() };
+    (last.is_less(first) == 0).then_some(clipped)
 }
 
 /// The part of the triangle's own bounds inside `bounds`: what a builder that does not clip uses.
@@ -60,77 +60,90 @@ pub fn overlap(triangle: &[[f32; 3]; 3], bounds: &Aabb) -> Option<Aabb> {
     (!part.is_empty()).then_some(part)
 }
 
-/// How far the corners of the clipped polygon can be from where they belong.
-fn margin(whole: &Aabb, bounds: &Aabb) -> f32 {
-    let mut cuts = 0;
-    let (mut largest, mut extent) = (0.0_f32, 0.0_f32);
-    for axis in 0..3 {
-        cuts += i32::from(whole.lower[axis] < bounds.lower[axis]);
-        cuts += i32::from(whole.upper[axis] > bounds.upper[axis]);
-        largest = largest.max(whole.lower[axis].abs()).max(whole.upper[axis].abs());
-        extent = extent.max(whole.upper[axis] - whole.lower[axis]);
-    }
+/// How far the corners of a polygon that is cut so often can be from where they belong.
+#[inline(always)]
+fn margin([lower, upper]: [Corner; 2], cuts: i32) -> Corner {
+    let greatest = |[x, y, z]: [f32; 3]| {
+        let pair = if x > y { x } else { y };
+        if pair > z { pair } else { z }
+    };
+    let zero = Corner::all(0.0);
+    let largest = greatest(upper.max(zero.minus(lower)).coordinates());
+    let extent = greatest(upper.minus(lower).coordinates());
     // One cut more than there are pays for the roundings of the margin itself.
-    (cuts + 1) as f32 * (HALF_ULP * (5.0 * extent + largest))
+    Corner::all((cuts + 1) as f32 * (HALF_ULP * (5.0 * extent + largest)))
 }
 
 /// A convex polygon on the stack.
 struct Polygon {
-    corners: [[f32; 3]; MAX_CORNERS],
+    /// Places behind the last that counts are written and never read.
+    corners: [Corner; PLACES],
     len: usize,
     overflowed: bool,
 }
 
+/// A power of two above [`MAX_CORNERS`]: what is written beyond goes to the front again.
+const PLACES: usize = 16;
+
 impl Polygon {
-    fn new(triangle: &[[f32; 3]; 3]) -> Self {
-        let mut polygon = Self::empty();
-        polygon.corners[..3].copy_from_slice(triangle);
-        polygon.len = 3;
-        polygon
+    #[inline(always)]
+    fn new([a, b, c]: [Corner; 3]) -> Self {
+        let mut corners = [a; PLACES];
+        (corners[1], corners[2]) = (b, c);
+        Self { corners, len: 3, overflowed: false }
     }
 
-    fn empty() -> Self {
-        Self { corners: [[0.0; 3]; MAX_CORNERS], len: 0, overflowed: false }
-    }
-
-    /// Keeps the side of the plane where `inside(coordinate, plane)` holds.
-    fn cut(&mut self, axis: usize, plane: f32, inside: impl Fn(f32, f32) -> bool) {
-        let mut kept = Self { overflowed: self.overflowed, ..Self::empty() };
-        for index in 0..self.len {
-            let corner = self.corners[index];
-            let next = self.corners[if index + 1 == self.len { 0 } else { index + 1 }];
-            let (here, there) = (inside(corner[axis], plane), inside(next[axis], plane));
-            if here {
-                kept.push(corner);
-            }
-            if here != there {
-                kept.push(crossing(corner, next, axis, plane));
-            }
+    /// Keeps what is between the planes along an axis, of those that cut.
+    #[inline(always)]
+    fn cut<const AXIS: usize>(&mut self, [below, above]: [u32; 2], planes: [Corner; 2]) {
+        if below >> AXIS & 1 == 1 {
+            self.cut_with::<AXIS>(planes[0].get::<AXIS>(), |value, plane| value >= plane);
         }
-        *self = kept;
-    }
-
-    fn push(&mut self, corner: [f32; 3]) {
-        match self.corners.get_mut(self.len) {
-            Some(free) => {
-                *free = corner;
-                self.len += 1;
-            }
-            None => self.overflowed = true,
+        if above >> AXIS & 1 == 1 {
+            self.cut_with::<AXIS>(planes[1].get::<AXIS>(), |value, plane| value <= plane);
         }
     }
 
-    fn bounds(&self) -> Aabb {
-        Aabb::of_points(&self.corners[..self.len])
+    /// Keeps the side of the plane where `inside(coordinate, plane)` holds. Whatever may be a corner
+    /// is written, and counts if it is one: which it is, nobody could foretell.
+    #[inline(always)]
+    fn cut_with<const AXIS: usize>(&mut self, plane: f32, inside: impl Fn(f32, f32) -> bool) {
+        let mut kept = [Corner::all(0.0); PLACES];
+        let mut len = 0;
+        let count = self.len.min(MAX_CORNERS);
+        if count > 0 {
+            self.corners[count] = self.corners[0];
+        }
+        let mut corner = self.corners[0];
+        let mut is_inside = inside(corner.get::<AXIS>(), plane);
+        for next in &self.corners[1..][..count] {
+            let is_next_inside = inside(next.get::<AXIS>(), plane);
+            kept[len % PLACES] = corner;
+            len += usize::from(is_inside);
+            kept[len % PLACES] = crossing::<AXIS>(corner, *next, plane);
+            len += usize::from(is_inside != is_next_inside);
+            (corner, is_inside) = (*next, is_next_inside);
+        }
+        self.overflowed |= len > MAX_CORNERS;
+        (self.corners, self.len) = (kept, len);
+    }
+
+    #[inline(always)]
+    fn bounds(&self) -> [Corner; 2] {
+        let mut bounds = [Corner::all(f32::INFINITY), Corner::all(f32::NEG_INFINITY)];
+        for corner in &self.corners[..self.len.min(MAX_CORNERS)] {
+            bounds = [bounds[0].min(*corner), bounds[1].max(*corner)];
+        }
+        bounds
     }
 }
 
 /// Where the edge from `p` to `q` meets the plane.
-fn crossing(p: [f32; 3], q: [f32; 3], axis: usize, plane: f32) -> [f32; 3] {
-    let t = (plane - p[axis]) / (q[axis] - p[axis]);
-    let mut point = [0, 1, 2].map(|other| p[other] + (q[other] - p[other]) * t);
-    point[axis] = plane;
-    point
+#[inline(always)]
+fn crossing<const AXIS: usize>(p: Corner, q: Corner, plane: f32) -> Corner {
+    let along = q.minus(p);
+    let t = (plane - p.get::<AXIS>()) / along.get::<AXIS>();
+    p.plus(along.times(t)).with::<AXIS>(plane)
 }
 
 #[cfg(test)]

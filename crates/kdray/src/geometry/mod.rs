@@ -2,6 +2,7 @@
 
 mod aabb;
 pub(crate) mod clip;
+mod corner;
 mod frame;
 mod mesh;
 mod mesh_file;

@@ -7,12 +7,11 @@ use super::pricing::Pricing;
 use super::set::Set;
 use super::sweep::Candidate;
 use crate::build::NodeCost;
-use crate::build::plane::Plane;
 use crate::geometry::Aabb;
 use super::event::position_of;
 
 /// The most references that columns hold; half as many more would be counted in twice the time.
-pub(super) const MOST: usize = 32;
+pub(super) const MOST: usize = 64;
 
 /// References of a node: triangles, which ascend, and bounds. Where there is no reference, bounds
 /// are empty.
@@ -53,8 +52,7 @@ impl Columns {
         let count = set.triangles.len();
         self.triangles[..count].copy_from_slice(set.triangles);
         for axis in 0..3 {
-            self.lower[axis] = [f32::INFINITY; MOST];
-            self.upper[axis] = [f32::NEG_INFINITY; MOST];
+            self.pad(axis, count);
             for event in set.events[axis] {
                 let position = position_of(event.ordered_position());
                 let ends = [&mut self.upper[axis], &mut self.lower[axis]];
@@ -63,41 +61,52 @@ impl Columns {
         }
     }
 
-    /// The references that reach the left and the right side of a plane, as bits.
-    pub(super) fn reach(&self, count: usize, plane: &Plane) -> [u32; 2] {
-        use crate::build::plane::Side;
-        let (mut left, mut right, mut flat) = (0_u32, 0_u32, 0_u32);
-        let (lower, upper) = (&self.lower[plane.axis], &self.upper[plane.axis]);
-        for reference in 0..count {
-            let is_left = lower[reference] < plane.position;
-            let is_right = upper[reference] > plane.position;
-            left |= u32::from(is_left) << reference;
-            right |= u32::from(is_right) << reference;
-            flat |= u32::from(!is_left & !is_right) << reference;
+    /// Empty bounds behind the first `count`.
+    fn pad(&mut self, axis: usize, count: usize) {
+        let padded = count.next_multiple_of(LANES);
+        self.lower[axis][count..padded].fill(f32::INFINITY);
+        self.upper[axis][count..padded].fill(f32::NEG_INFINITY);
+    }
+
+    /// Of the first `count` references those below, in and above a plane, as bits; straddlers are
+    /// below and above.
+    pub(super) fn sides(&self, count: usize, axis: usize, position: f32) -> Sides {
+        let (lower, upper) = (&self.lower[axis], &self.upper[axis]);
+        #[cfg(target_arch = "x86_64")]
+        if let Some(lanes) = detect() {
+            // SAFETY: `lanes` is proof that the processor has AVX2.
+            return unsafe { sides_avx2(lanes, lower, upper, count, position) };
         }
-        if plane.flat == Side::Left { [left | flat, right] } else { [left, right | flat] }
+        sides_with(Plain, lower, upper, count, position)
     }
 
     /// Writes the references whose bit is set to `kept`.
-    pub(super) fn keep(&self, bits: u32, kept: &mut Self) {
-        let mut places = [0_u8; MOST];
-        let (mut count, mut rest) = (0, bits);
-        while rest != 0 {
-            places[count] = rest.trailing_zeros() as u8;
-            rest &= rest - 1;
-            count += 1;
-        }
-        let padded = count.next_multiple_of(LANES);
-        for (to, from) in places[..count].iter().enumerate() {
-            kept.triangles[to] = self.triangles[usize::from(*from)];
+    pub(super) fn keep(&self, bits: u64, kept: &mut Self) {
+        let places = Places::new(bits);
+        for (to, from) in places.iter() {
+            kept.triangles[to] = self.triangles[from];
         }
         for axis in 0..3 {
-            for (to, from) in places[..count].iter().enumerate() {
-                kept.lower[axis][to] = self.lower[axis][usize::from(*from)];
-                kept.upper[axis][to] = self.upper[axis][usize::from(*from)];
+            for (to, from) in places.iter() {
+                kept.lower[axis][to] = self.lower[axis][from];
+                kept.upper[axis][to] = self.upper[axis][from];
             }
-            kept.lower[axis][count..padded].fill(f32::INFINITY);
-            kept.upper[axis][count..padded].fill(f32::NEG_INFINITY);
+            kept.pad(axis, places.count);
+        }
+    }
+
+    /// Drops the references whose bit is not set.
+    pub(super) fn retain(&mut self, bits: u64) {
+        let places = Places::new(bits);
+        for (to, from) in places.iter() {
+            self.triangles[to] = self.triangles[from];
+        }
+        for axis in 0..3 {
+            for (to, from) in places.iter() {
+                self.lower[axis][to] = self.lower[axis][from];
+                self.upper[axis][to] = self.upper[axis][from];
+            }
+            self.pad(axis, places.count);
         }
     }
 
@@ -135,6 +144,49 @@ impl Columns {
     }
 }
 
+/// References below, in and above a plane, as bits.
+pub(super) struct Sides {
+    pub(super) below: u64,
+    pub(super) flat: u64,
+    pub(super) above: u64,
+}
+
+/// Where the bits of a number are.
+struct Places {
+    at: [u8; MOST],
+    count: usize,
+}
+
+impl Places {
+    fn new(mut bits: u64) -> Self {
+        let mut places = Self { at: [0; MOST], count: 0 };
+        while bits != 0 {
+            places.at[places.count & (MOST - 1)] = bits.trailing_zeros() as u8;
+            bits &= bits - 1;
+            places.count += 1;
+        }
+        places
+    }
+
+    /// Each place, behind how many there are before it.
+    fn iter(&self) -> impl Iterator<Item = (usize, usize)> {
+        let at = self.at[..self.count].iter();
+        at.map(|place| usize::from(*place) & (MOST - 1)).enumerate()
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn sides_avx2(
+    lanes: Avx2,
+    lower: &[f32; MOST],
+    upper: &[f32; MOST],
+    count: usize,
+    position: f32,
+) -> Sides {
+    sides_with(lanes, lower, upper, count, position)
+}
+
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn count_avx2(lanes: Avx2, columns: &Columns, count: usize, counts: &mut Counts) {
@@ -155,6 +207,26 @@ fn cheapest_avx2(
 }
 
 // No closures below: they are not compiled for the processor that their function is for.
+
+#[inline(always)]
+fn sides_with<L: Lanes>(
+    lanes: L,
+    lower: &[f32; MOST],
+    upper: &[f32; MOST],
+    count: usize,
+    position: f32,
+) -> Sides {
+    let plane = lanes.numbers(position);
+    let (mut below, mut above) = (0, 0);
+    for group in 0..count.min(MOST).div_ceil(LANES) {
+        let starts_before = lanes.is_less(group_of(lanes, lower, group), plane);
+        let ends_after = lanes.is_less(plane, group_of(lanes, upper, group));
+        below |= u64::from(lanes.bits(starts_before)) << (group * LANES);
+        above |= u64::from(lanes.bits(ends_after)) << (group * LANES);
+    }
+    let all = u64::MAX >> (MOST - count.clamp(1, MOST));
+    Sides { below: below & all, flat: !(below | above) & all, above: above & all }
+}
 
 #[inline(always)]
 fn count_with<L: Lanes>(lanes: L, columns: &Columns, count: usize, counts: &mut Counts) {

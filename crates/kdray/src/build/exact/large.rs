@@ -3,7 +3,7 @@
 use super::set::{OwnedSet, Set, sorted_events};
 use super::split::{Sizes, Workspace};
 use super::sweep::{Candidate, cheapest, sweep};
-use super::{BuildError, Context, Growth, Node, NodeCost, small};
+use super::{BuildError, Context, Growth, Node, NodeCost, small, sort};
 
 /// Subtrees of at most this many references are small: one task, in scratch memory. More makes
 /// fewer, longer tasks; less leaves more nodes to lists of their own.
@@ -20,7 +20,11 @@ pub(super) fn build(context: &Context) -> Result<Growth, BuildError> {
     let mesh = context.mesh;
     let bytes = OwnedSet::bytes(mesh.triangles().len());
     context.meter.charge("events", bytes)?;
+    let sorts = if context.limits.threads > 1 { 3 } else { 1 };
+    let sort_bytes = sorts * sort::bytes(2 * mesh.triangles().len());
+    context.meter.charge("events", sort_bytes)?;
     let [x, y, z] = on_axes(context, |axis| sorted_events(mesh, axis));
+    context.meter.release(sort_bytes);
     let set = OwnedSet::root(mesh, [x, y, z]);
     subtree(context, Booked { set, bytes }, Node { bounds: mesh.bounds(), depth: 0, share: 1.0 })
 }

@@ -14,6 +14,7 @@ mod partition;
 mod pricing;
 mod set;
 mod small;
+mod sort;
 mod split;
 mod sweep;
 mod tiny;

@@ -2,6 +2,7 @@
 
 use super::event::{Event, events_of};
 use super::partition::SPARE;
+use super::sort::sort;
 use crate::geometry::{Aabb, Mesh};
 use crate::memory::{with_huge_pages, zeros_in_huge_pages};
 
@@ -77,8 +78,7 @@ pub(super) fn sorted_events(mesh: &Mesh, axis: usize) -> Vec<Event> {
         let bounds = Aabb::of_points(&mesh.triangle(triangle));
         events.extend(events_of(&bounds, axis, triangle as u32));
     }
-    events.sort_unstable();
-    events
+    sort(events)
 }
 
 impl<'a> Room<'a> {

@@ -1,10 +1,9 @@
 //! Subtrees of few references: to count all of them at every plane is faster than to keep events.
 
-use super::columns::{Columns, Counts, MOST};
+use super::columns::{Columns, Counts, MOST, Sides};
 use super::set::Set;
 use super::sweep::{Candidate, cheapest};
 use super::{Context, Growth, Node, NodeCost};
-use crate::build::plane::{Plane, Side};
 use crate::geometry::Aabb;
 
 /// Subtrees of at most this many references are tiny.
@@ -16,7 +15,11 @@ pub(super) struct Tiny {
     /// A node and the right siblings on the way to it.
     pending: Vec<Columns>,
     counts: Box<Counts>,
+    straddlers: Vec<Straddler>,
 }
+
+/// A reference on both sides of a plane, and its parts there.
+type Straddler = (u32, [Option<Aabb>; 2]);
 
 impl Tiny {
     /// Builds the subtree of a node.
@@ -29,6 +32,7 @@ impl Tiny {
     /// Bytes that it holds.
     pub(super) fn bytes(&self) -> usize {
         self.pending.capacity() * size_of::<Columns>()
+            + self.straddlers.capacity() * size_of::<Straddler>()
     }
 }
 
@@ -51,12 +55,11 @@ impl Subtree<'_> {
     /// be known already.
     fn node(&mut self, level: usize, mut count: usize, mut node: Node, mut is_counted: bool) {
         loop {
-            let Some(plane) = self.plane(level, count, &node, &mut is_counted) else {
+            let Some((candidate, reach)) = self.plane(level, count, &node, &mut is_counted) else {
                 return self.growth.push_leaf(&self.tiny.pending[level].triangles[..count]);
             };
-            let place = self.growth.push_inner(plane.axis, plane.position);
-            let [left, right] = node.cut(plane.axis, plane.position, [0, 0]);
-            let reach = self.tiny.pending[level].reach(count, &plane);
+            let place = self.growth.push_inner(candidate.axis, candidate.position);
+            let [left, right] = node.cut(candidate.axis, candidate.position, [0, 0]);
             match reach {
                 // The plane cuts off empty space, and the other child is the node again.
                 [0, _] => {
@@ -79,23 +82,26 @@ impl Subtree<'_> {
         }
     }
 
-    /// The cheapest plane of a node, or `None` if it is a leaf.
+    /// The cheapest plane of a node and the references that reach its two sides, as bits, or
+    /// `None` if the node is a leaf.
     fn plane(
         &mut self,
         level: usize,
         count: usize,
         node: &Node,
         is_counted: &mut bool,
-    ) -> Option<Plane> {
+    ) -> Option<(Candidate, [u64; 2])> {
         let cost = self.context.prices(node, count)?;
-        let Tiny { pending, counts } = &mut *self.tiny;
+        let Tiny { pending, counts, .. } = &mut *self.tiny;
+        let columns = &pending[level];
         if !*is_counted {
-            pending[level].count(count, counts);
+            columns.count(count, counts);
             *is_counted = true;
         }
-        let by_axis = pending[level].cheapest(count, counts, &node.bounds, &cost);
+        let by_axis = columns.cheapest(count, counts, &node.bounds, &cost);
         let candidate = cheapest(by_axis, cost.leaf(count))?;
-        Some(pending[level].plane(count, &node.bounds, &candidate, &cost))
+        let sides = columns.sides(count, candidate.axis, candidate.position);
+        Some((candidate, reach(&sides, &node.bounds, &candidate, &cost)))
     }
 
     /// Leaves the references of the right child at `level`, and those of the left one above; gives
@@ -103,51 +109,49 @@ impl Subtree<'_> {
     fn split(
         &mut self,
         level: usize,
-        [mut left, mut right]: [u32; 2],
+        [mut left, mut right]: [u64; 2],
         cells: [&Aabb; 2],
     ) -> [usize; 2] {
         self.columns_at(level + 1);
-        let [columns, above] = self.tiny.pending[level..].first_chunk_mut().expect("two levels");
-        let mut parts = [(0, [None; 2]); MOST];
-        let (mut straddlers, mut rest) = (0, left & right);
+        let Tiny { pending, straddlers, .. } = &mut *self.tiny;
+        let [columns, above] = pending[level..].first_chunk_mut().expect("two levels");
+        straddlers.clear();
+        let mut rest = left & right;
         while rest != 0 {
             let reference = rest.trailing_zeros();
-            let corners = self.context.mesh.triangle(columns.triangles[reference as usize] as usize);
-            let part = cells.map(|cell| self.context.limits.part(&corners, cell));
-            left &= !(u32::from(part[0].is_none()) << reference);
-            right &= !(u32::from(part[1].is_none()) << reference);
-            parts[straddlers] = (reference, part);
-            straddlers += 1;
+            let triangle = columns.triangles[reference as usize];
+            let corners = self.context.mesh.triangle(triangle as usize);
+            let parts = cells.map(|cell| self.context.limits.part(&corners, cell));
+            left &= !(u64::from(parts[0].is_none()) << reference);
+            right &= !(u64::from(parts[1].is_none()) << reference);
+            straddlers.push((reference, parts));
             rest &= rest - 1;
         }
         columns.keep(left, above);
-        let node = columns.clone();
-        node.keep(right, columns);
-        for (reference, part) in &parts[..straddlers] {
-            for (bits, child, part) in [(left, &mut *above, part[0]), (right, &mut *columns, part[1])] {
-                let before = bits & ((1 << reference) - 1);
+        columns.retain(right);
+        for (reference, parts) in straddlers {
+            for (bits, child, part) in [(left, &mut *above, parts[0]), (right, &mut *columns, parts[1])] {
+                let before = bits & ((1 << *reference) - 1);
                 if let Some(part) = part {
                     child.set_bounds(before.count_ones() as usize, &part);
                 }
             }
         }
-        [left.count_ones() as usize, right.count_ones() as usize]
+        [left, right].map(|bits| bits.count_ones() as usize)
     }
 }
 
-impl Columns {
-    /// The plane of `candidate`, with its flat references on the cheaper side (left on a tie).
-    fn plane(&self, count: usize, bounds: &Aabb, candidate: &Candidate, cost: &NodeCost) -> Plane {
-        let Candidate { axis, position, .. } = *candidate;
-        let plane = |flat| Plane { axis, position, flat };
-        let [left, right] = [Side::Left, Side::Right].map(|flat| {
-            self.reach(count, &plane(flat)).map(|bits| bits.count_ones() as i32)
-        });
-        if left == right {
-            return plane(Side::Left);
-        }
-        let distances = [position - bounds.lower[axis], bounds.upper[axis] - position];
-        let price = |counts| cost.split(axis, distances, counts);
-        plane(if price(left) <= price(right) { Side::Left } else { Side::Right })
+/// The references that reach the two sides of a plane. Flat ones reach the cheaper side (left on a
+/// tie).
+fn reach(sides: &Sides, bounds: &Aabb, candidate: &Candidate, cost: &NodeCost) -> [u64; 2] {
+    let Candidate { axis, position, .. } = *candidate;
+    let flat_left = [sides.below | sides.flat, sides.above];
+    let flat_right = [sides.below, sides.above | sides.flat];
+    if sides.flat == 0 {
+        return flat_left;
     }
+    let distances = [position - bounds.lower[axis], bounds.upper[axis] - position];
+    let price =
+        |reach: [u64; 2]| cost.split(axis, distances, reach.map(|bits| bits.count_ones() as i32));
+    if price(flat_left) <= price(flat_right) { flat_left } else { flat_right }
 }
