@@ -76,7 +76,8 @@ impl Context<'_> {
         self.meter.release(find_bytes);
         let Some(plane) = plane else {
             let triangles: Vec<u32> = references.iter().map(|r| r.triangle).collect();
-            self.growth.push_leaf(&triangles);
+            let parts = references.iter().fold(Aabb::EMPTY, |all, r| all.union(&r.bounds));
+            self.growth.push_leaf(&triangles, &parts);
             self.meter.advance(share);
             self.meter.release(capacity_bytes(&references));
             let grown = self.growth.capacity_bytes() - self.booked;

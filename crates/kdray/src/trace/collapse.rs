@@ -37,6 +37,31 @@ fn block_count(tree: &Tree) -> usize {
 /// By node: bounds of the parts of its triangles inside its cell.
 fn tight_bounds(mesh: &Mesh, tree: &Tree) -> Vec<Aabb> {
     let nodes = tree.nodes();
+    let mut bounds = match tree.parts() {
+        Some(parts) => known_parts(tree, parts),
+        None => clipped_parts(mesh, tree),
+    };
+    for (index, node) in nodes.iter().enumerate().rev() {
+        if let Kind::Inner { right, .. } = node.kind() {
+            bounds[index] = bounds[index + 1].union(&bounds[right]);
+        }
+    }
+    bounds
+}
+
+/// By node: what the builder knows of its parts if it is a leaf.
+fn known_parts(tree: &Tree, parts: &[Aabb]) -> Vec<Aabb> {
+    let mut parts = parts.iter();
+    let part = |node: &Node| match node.kind() {
+        Kind::Leaf { count: 1.., .. } => *parts.next().expect("every leaf has bounds"),
+        _ => Aabb::EMPTY,
+    };
+    tree.nodes().iter().map(part).collect()
+}
+
+/// By node: bounds of the parts of its triangles if it is a leaf, found by clipping these.
+fn clipped_parts(mesh: &Mesh, tree: &Tree) -> Vec<Aabb> {
+    let nodes = tree.nodes();
     let mut bounds = vec![tree.bounds(); nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
         if let Kind::Inner { axis, position, right } = node.kind() {
@@ -52,13 +77,18 @@ fn tight_bounds(mesh: &Mesh, tree: &Tree) -> Vec<Aabb> {
                 triangles.iter().filter_map(part).fold(Aabb::EMPTY, |all, part| all.union(&part));
         }
     });
-    for (index, node) in nodes.iter().enumerate().rev() {
-        if let Kind::Inner { right, .. } = node.kind() {
-            bounds[index] = bounds[index + 1].union(&bounds[right]);
-        }
-    }
     bounds
 }
+
+/// Descendants of a node, and the areas of those that may be opened.
+struct Open {
+    nodes: [usize; 8],
+    areas: [f64; 8],
+    len: usize,
+}
+
+/// The area of what cannot be opened.
+const LEAF: f64 = -1.0;
 
 struct Collapse<'a> {
     mesh: &'a Mesh,
@@ -71,39 +101,60 @@ impl Collapse<'_> {
     fn wide(&self, node: usize, layout: &mut Layout) -> Child {
         let index = layout.wides.len();
         layout.wides.push(Wide::EMPTY);
-        let descendants = self.descendants(node);
-        // Tasks take memory twice, once for themselves: not where there is nobody to do them.
-        let children = if rayon::current_num_threads() > 1 && self.is_large(node) {
-            self.children_as_tasks(&descendants, layout)
-        } else {
-            descendants.iter().map(|descendant| self.child(*descendant, layout)).collect()
-        };
+        let open = self.descendants(node);
+        let descendants = &open.nodes[..open.len];
         let mut wide = Wide::EMPTY;
-        for (place, child) in children.into_iter().enumerate() {
-            wide.set(place, &self.bounds[descendants[place]], child);
+        // Tasks take memory twice, once for themselves: not where there is nobody to do them.
+        if rayon::current_num_threads() > 1 && self.is_large(node) {
+            let children = self.children_as_tasks(descendants, layout);
+            for (place, child) in children.into_iter().enumerate() {
+                wide.set(place, &self.bounds[descendants[place]], child);
+            }
+        } else {
+            for (place, descendant) in descendants.iter().enumerate() {
+                wide.set(place, &self.bounds[*descendant], self.child(*descendant, layout));
+            }
         }
-        let (order, _) = self.order(node, &descendants, &mut 0);
+        let (order, _) = self.order(node, descendants, &mut 0);
         wide.set_order(order, descendants.len());
         layout.wides[index] = wide;
         Child(index as u32)
     }
 
     /// At most eight descendants that hold everything below `node`, from left to right.
-    fn descendants(&self, node: usize) -> Vec<usize> {
-        let mut open: Vec<usize> = if self.is_empty(node) { Vec::new() } else { vec![node] };
-        loop {
-            let area = |place: &usize| self.bounds[open[*place]].half_area();
-            let largest = (0..open.len())
-                .filter(|place| self.children(open[*place]).is_some())
-                .max_by(|a, b| area(a).total_cmp(&area(b)));
-            let Some(largest) = largest else { return open };
-            let below = self.children(open[largest]).into_iter().flatten();
-            let below: Vec<usize> = below.filter(|child| !self.is_empty(*child)).collect();
-            if open.len() - 1 + below.len() > 8 {
-                return open;
-            }
-            open.splice(largest..=largest, below);
+    fn descendants(&self, node: usize) -> Open {
+        let mut open = Open { nodes: [0; 8], areas: [LEAF; 8], len: 0 };
+        if !self.is_empty(node) {
+            open.len = 1;
+            self.put(node, 0, &mut open);
         }
+        loop {
+            let (mut largest, mut area) = (None, 0.0);
+            for place in 0..open.len {
+                if open.areas[place] >= area {
+                    (largest, area) = (Some(place), open.areas[place]);
+                }
+            }
+            let Some(place) = largest else { return open };
+            let below = self.children(open.nodes[place]).expect("leaves have no area");
+            match below.map(|child| !self.is_empty(child)) {
+                [true, true] if open.len == 8 => return open,
+                [true, true] => {
+                    open.nodes.copy_within(place..open.len, place + 1);
+                    open.areas.copy_within(place..open.len, place + 1);
+                    open.len += 1;
+                    self.put(below[0], place, &mut open);
+                    self.put(below[1], place + 1, &mut open);
+                }
+                [is_left, _] => self.put(below[usize::from(!is_left)], place, &mut open),
+            }
+        }
+    }
+
+    fn put(&self, node: usize, place: usize, open: &mut Open) {
+        let is_leaf = self.children(node).is_none();
+        open.nodes[place] = node;
+        open.areas[place] = if is_leaf { LEAF } else { self.bounds[node].half_area() };
     }
 
     fn is_empty(&self, node: usize) -> bool {

@@ -145,7 +145,7 @@ impl Tree {
         let nodes: Vec<Node> = bytemuck::allocation::pod_collect_to_vec(nodes);
         let references: Vec<u32> = bytemuck::allocation::pod_collect_to_vec(references);
         check::walk(&nodes, &references, header.bounds, header.triangles as usize, |_, _, _| ())?;
-        Ok(Self { header, storage: Storage::Owned { nodes, references } })
+        Ok(Self { header, storage: Storage::Owned { nodes, references }, parts: None })
     }
 
     /// The tree of a file's bytes, used where they are: hand it a memory map.
@@ -167,7 +167,7 @@ impl Tree {
             nodes: counts.nodes,
             references: counts.references,
         };
-        let tree = Self { header, storage };
+        let tree = Self { header, storage, parts: None };
         let triangles = header.triangles as usize;
         check::walk(tree.nodes(), tree.references(), header.bounds, triangles, |_, _, _| ())?;
         Ok(tree)

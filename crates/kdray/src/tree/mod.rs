@@ -25,6 +25,9 @@ use crate::geometry::{Aabb, Frame, Mesh};
 pub struct Tree {
     pub(crate) header: Header,
     storage: Storage,
+    /// Of leaves that have references, in order: bounds of the parts of these. The builder knows
+    /// them, and hands them to tracers; they are not in a tree's bytes.
+    parts: Option<Vec<Aabb>>,
 }
 
 /// What a tree says of itself, beside its nodes and references.
@@ -92,7 +95,8 @@ impl Tree {
     }
 
     pub(crate) fn from_growth(mesh: &Mesh, growth: Growth, cost: Cost) -> Self {
-        Self::from_parts(mesh, growth.nodes, growth.references, cost)
+        let parts = Some(growth.parts);
+        Self { parts, ..Self::from_parts(mesh, growth.nodes, growth.references, cost) }
     }
 
     /// The tree whose parts a builder on another device made. Nothing is checked: parts that make
@@ -107,7 +111,7 @@ impl Tree {
             triangles: mesh.triangles().len() as u32,
             mesh: mesh.fingerprint(),
         };
-        Self { header, storage: Storage::Owned { nodes, references } }
+        Self { header, storage: Storage::Owned { nodes, references }, parts: None }
     }
 
     /// The nodes, in depth-first order; the root is the first.
@@ -132,6 +136,12 @@ impl Tree {
                 bytemuck::cast_slice(&file::body((**bytes).as_ref())[start..end])
             }
         }
+    }
+
+    /// Of leaves that have references, in order: bounds of the parts of these, if the tree was just
+    /// built.
+    pub(crate) fn parts(&self) -> Option<&[Aabb]> {
+        self.parts.as_deref()
     }
 
     /// The box of the root: the bounds of all triangles, in the mesh's frame.

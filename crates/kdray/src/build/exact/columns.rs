@@ -110,6 +110,21 @@ impl Columns {
         }
     }
 
+    /// Bounds of the first `count` references.
+    pub(super) fn bounds(&self, count: usize) -> Aabb {
+        let mut bounds = Aabb::EMPTY;
+        for axis in 0..3 {
+            for reference in 0..count.min(MOST) {
+                let (lower, upper) = (self.lower[axis][reference], self.upper[axis][reference]);
+                let first = &mut bounds.lower[axis];
+                *first = if lower < *first { lower } else { *first };
+                let last = &mut bounds.upper[axis];
+                *last = if upper > *last { upper } else { *last };
+            }
+        }
+        bounds
+    }
+
     pub(super) fn set_bounds(&mut self, place: usize, bounds: &Aabb) {
         for axis in 0..3 {
             self.lower[axis][place] = bounds.lower[axis];

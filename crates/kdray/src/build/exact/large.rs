@@ -4,6 +4,7 @@ use super::set::{OwnedSet, Set, sorted_events};
 use super::split::{Sizes, Workspace};
 use super::sweep::{Candidate, cheapest, sweep};
 use super::{BuildError, Context, Growth, Node, NodeCost, small, sort};
+use crate::geometry::Aabb;
 
 /// Subtrees of at most this many references are small: one task, in scratch memory. More makes
 /// fewer, longer tasks; less leaves more nodes to lists of their own.
@@ -77,7 +78,7 @@ fn cheapest_plane(context: &Context, set: &Set, node: &Node, cost: &NodeCost) ->
 
 fn leaf(context: &Context, set: &Set, node: &Node) -> Result<Growth, BuildError> {
     let mut growth = Growth::default();
-    growth.push_leaf(set.triangles);
+    growth.push_leaf(set.triangles, &set.bounds());
     context.meter.charge("tree", growth.capacity_bytes())?;
     context.meter.advance(node.share);
     Ok(growth)
@@ -91,7 +92,7 @@ fn cut_off(
     sizes: Sizes,
 ) -> (Result<Growth, BuildError>, Result<Growth, BuildError>) {
     let mut empty = Growth::default();
-    empty.push_leaf(&[]);
+    empty.push_leaf(&[], &Aabb::EMPTY);
     let charged = context.meter.charge("tree", empty.capacity_bytes());
     let empty = charged.map(|()| empty);
     if sizes.left == 0 {
@@ -145,6 +146,7 @@ fn joined(
     let mut growth = Growth {
         nodes: Vec::with_capacity(1 + left.nodes.len() + right.nodes.len()),
         references: Vec::with_capacity(left.references.len() + right.references.len()),
+        parts: Vec::with_capacity(left.parts.len() + right.parts.len()),
     };
     context.meter.charge("tree", growth.capacity_bytes())?;
     let place = growth.push_inner(candidate.axis, candidate.position);

@@ -1,6 +1,6 @@
 //! What the builder knows of a node: its references, and their events in order.
 
-use super::event::{Event, events_of};
+use super::event::{Event, events_of, position_of};
 use super::partition::SPARE;
 use super::sort::sort;
 use crate::geometry::{Aabb, Mesh};
@@ -13,6 +13,20 @@ pub(super) struct Set<'a> {
     pub(super) triangles: &'a [u32],
     /// By axis, sorted by position and kind: two of every reference.
     pub(super) events: [&'a [Event]; 3],
+}
+
+impl Set<'_> {
+    /// Bounds of the references.
+    pub(super) fn bounds(&self) -> Aabb {
+        let mut bounds = Aabb::EMPTY;
+        for (axis, events) in self.events.iter().enumerate() {
+            if let [first, .., last] = events {
+                bounds.lower[axis] = position_of(first.ordered_position());
+                bounds.upper[axis] = position_of(last.ordered_position());
+            }
+        }
+        bounds
+    }
 }
 
 /// Room for the references of a node, with places to spare in every list (see `partition`).

@@ -82,12 +82,12 @@ impl Subtree<'_> {
             return Ok(());
         }
         let Some(cost) = self.context.prices(&node, count) else {
-            self.growth.push_leaf(set.triangles);
+            self.growth.push_leaf(set.triangles, &set.bounds());
             return Ok(());
         };
         let by_axis = [0, 1, 2].map(|axis| sweep(&set, &node.bounds, &cost, axis));
         let Some(candidate) = cheapest(by_axis, cost.leaf(count)) else {
-            self.growth.push_leaf(set.triangles);
+            self.growth.push_leaf(set.triangles, &set.bounds());
             return Ok(());
         };
         let sizes = self.workspace.assign(&set, &node.bounds, &candidate, &cost, self.context);

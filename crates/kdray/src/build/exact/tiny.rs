@@ -56,20 +56,21 @@ impl Subtree<'_> {
     fn node(&mut self, level: usize, mut count: usize, mut node: Node, mut is_counted: bool) {
         loop {
             let Some((candidate, reach)) = self.plane(level, count, &node, &mut is_counted) else {
-                return self.growth.push_leaf(&self.tiny.pending[level].triangles[..count]);
+                let leaf = &self.tiny.pending[level];
+                return self.growth.push_leaf(&leaf.triangles[..count], &leaf.bounds(count));
             };
             let place = self.growth.push_inner(candidate.axis, candidate.position);
             let [left, right] = node.cut(candidate.axis, candidate.position, [0, 0]);
             match reach {
                 // The plane cuts off empty space, and the other child is the node again.
                 [0, _] => {
-                    self.growth.push_leaf(&[]);
+                    self.growth.push_leaf(&[], &Aabb::EMPTY);
                     self.growth.set_right(place);
                 }
                 [_, 0] => {
                     self.node(level, count, left, true);
                     self.growth.set_right(place);
-                    return self.growth.push_leaf(&[]);
+                    return self.growth.push_leaf(&[], &Aabb::EMPTY);
                 }
                 _ => {
                     let counts = self.split(level, reach, [&left.bounds, &right.bounds]);
