@@ -11,27 +11,57 @@ use super::block::{Block, LANES};
 use super::wide::{Child, Layout, Wide};
 use crate::geometry::clip::clip;
 use crate::geometry::{Aabb, Mesh};
-use crate::memory::with_huge_pages;
+use crate::memory::{with_huge_pages, zeros_in_huge_pages};
 use crate::tree::{Kind, Node, Tree};
 
-/// Subtrees of at least this many references are laid out as tasks of their own.
-const LARGE: usize = 16 * 1024;
+/// Nodes whose leaves are laid out by one task.
+const NODES: usize = 4096;
 
 /// The layout of a tree, its root first.
 pub(super) fn collapse(mesh: &Mesh, tree: &Tree) -> Layout {
-    let collapse = Collapse { mesh, tree, bounds: tight_bounds(mesh, tree) };
-    let mut layout = Layout { wides: Vec::new(), blocks: with_huge_pages(block_count(tree)) };
-    collapse.wide(0, &mut layout);
-    layout
+    let bounds = tight_bounds(mesh, tree);
+    let mut collapse = Collapse { tree, bounds, wides: Vec::new(), block_count: 0 };
+    collapse.wide(0);
+    let mut wides = with_huge_pages(collapse.wides.len());
+    wides.extend_from_slice(&collapse.wides);
+    drop(collapse);
+    Layout { wides, blocks: blocks(mesh, tree) }
 }
 
-/// How many blocks the leaves of a tree fill.
-fn block_count(tree: &Tree) -> usize {
-    let blocks = |node: &Node| match node.kind() {
+/// The blocks of all leaves.
+fn blocks(mesh: &Mesh, tree: &Tree) -> Vec<Block> {
+    let tasks = tree.nodes().chunks(NODES);
+    let counts: Vec<usize> =
+        tasks.clone().map(|nodes| nodes.iter().map(block_count).sum()).collect();
+    let mut blocks: Vec<Block> = zeros_in_huge_pages(counts.iter().sum());
+    let mut rest = &mut blocks[..];
+    let task = |(nodes, count)| (nodes, rest.split_off_mut(..count).expect("as many as counted"));
+    let tasks: Vec<(&[Node], &mut [Block])> = tasks.zip(counts).map(task).collect();
+    tasks.into_par_iter().for_each(|(nodes, blocks)| fill(mesh, tree, nodes, blocks));
+    blocks
+}
+
+/// How many blocks a node fills.
+fn block_count(node: &Node) -> usize {
+    match node.kind() {
         Kind::Leaf { count, .. } => count.div_ceil(LANES),
         Kind::Inner { .. } => 0,
-    };
-    tree.nodes().iter().map(blocks).sum()
+    }
+}
+
+/// Writes the blocks of the leaves among `nodes`.
+fn fill(mesh: &Mesh, tree: &Tree, nodes: &[Node], blocks: &mut [Block]) {
+    let mut blocks = blocks.iter_mut();
+    for node in nodes {
+        if let Kind::Leaf { first, count } = node.kind() {
+            let mut chunks = tree.references()[first..first + count].chunks(LANES);
+            while let Some(chunk) = chunks.next() {
+                let corners = |triangle: u32| mesh.triangle(triangle as usize);
+                let block = blocks.next().expect("as many as counted");
+                *block = Block::new(chunk, chunks.len() == 0, corners);
+            }
+        }
+    }
 }
 
 /// By node: bounds of the parts of its triangles inside its cell.
@@ -91,34 +121,42 @@ struct Open {
 const LEAF: f64 = -1.0;
 
 struct Collapse<'a> {
-    mesh: &'a Mesh,
     tree: &'a Tree,
+    /// By node.
     bounds: Vec<Aabb>,
+    wides: Vec<Wide>,
+    /// Blocks of the leaves so far.
+    block_count: usize,
 }
 
 impl Collapse<'_> {
     /// Lays out the subtree at `node` below a wide node of its own.
-    fn wide(&self, node: usize, layout: &mut Layout) -> Child {
-        let index = layout.wides.len();
-        layout.wides.push(Wide::EMPTY);
+    fn wide(&mut self, node: usize) -> Child {
+        let index = self.wides.len();
+        self.wides.push(Wide::EMPTY);
         let open = self.descendants(node);
         let descendants = &open.nodes[..open.len];
         let mut wide = Wide::EMPTY;
-        // Tasks take memory twice, once for themselves: not where there is nobody to do them.
-        if rayon::current_num_threads() > 1 && self.is_large(node) {
-            let children = self.children_as_tasks(descendants, layout);
-            for (place, child) in children.into_iter().enumerate() {
-                wide.set(place, &self.bounds[descendants[place]], child);
-            }
-        } else {
-            for (place, descendant) in descendants.iter().enumerate() {
-                wide.set(place, &self.bounds[*descendant], self.child(*descendant, layout));
-            }
+        for (place, descendant) in descendants.iter().enumerate() {
+            let child = self.child(*descendant);
+            wide.set(place, &self.bounds[*descendant], child);
         }
         let (order, _) = self.order(node, descendants, &mut 0);
         wide.set_order(order, descendants.len());
-        layout.wides[index] = wide;
+        self.wides[index] = wide;
         Child(index as u32)
+    }
+
+    /// A descendant, which comes behind all that are laid out already.
+    fn child(&mut self, node: usize) -> Child {
+        match self.tree.nodes()[node].kind() {
+            Kind::Inner { .. } => self.wide(node),
+            Kind::Leaf { .. } => {
+                let first = self.block_count;
+                self.block_count += block_count(&self.tree.nodes()[node]);
+                Child::leaf(first)
+            }
+        }
     }
 
     /// At most eight descendants that hold everything below `node`, from left to right.
@@ -187,50 +225,61 @@ impl Collapse<'_> {
         };
         ([0, 1, 2, 3, 4, 5, 6, 7].map(both), left.1 + right.1)
     }
+}
 
-    fn child(&self, node: usize, layout: &mut Layout) -> Child {
-        match self.tree.nodes()[node].kind() {
-            Kind::Inner { .. } => self.wide(node, layout),
-            Kind::Leaf { first, count } => self.leaf(first, count, layout),
-        }
-    }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::BuildOptions;
 
-    fn leaf(&self, first: usize, count: usize, layout: &mut Layout) -> Child {
-        let start = layout.blocks.len();
-        let chunks = self.tree.references()[first..first + count].chunks(LANES);
-        let last = chunks.len() - 1;
-        for (index, chunk) in chunks.enumerate() {
-            let corners = |triangle: u32| self.mesh.triangle(triangle as usize);
-            layout.blocks.push(Block::new(chunk, index == last, corners));
-        }
-        Child::leaf(start)
-    }
-
-    /// Lays out large children at the same time, each for itself, and puts them one behind the
-    /// other: where everything is does not depend on the threads.
-    fn children_as_tasks(&self, nodes: &[usize], layout: &mut Layout) -> Vec<Child> {
-        let lay_out = |node: &usize| {
-            let mut layout = Layout { wides: Vec::new(), blocks: Vec::new() };
-            let child = self.child(*node, &mut layout);
-            (child, layout)
+    /// Triangles that reach over many cells.
+    fn mesh() -> Mesh {
+        let mut state = 7_u32;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / 16_777_216.0
         };
-        let children: Vec<_> = nodes.par_iter().map(lay_out).collect();
-        children.into_iter().map(|(child, below)| layout.append(child, below)).collect()
+        let positions: Vec<[f32; 3]> = (0..1500).map(|_| [0; 3].map(|_| next())).collect();
+        let near = |k: u32| [k, (k + 1) % 1500, (k * 7 + 2) % 1500];
+        let triangles: Vec<[u32; 3]> = (0..1500).map(near).collect();
+        Mesh::new(&positions, &triangles).expect("sound")
     }
 
-    /// Whether a subtree has enough references to be worth a task.
-    fn is_large(&self, node: usize) -> bool {
-        let (mut first_leaf, mut last_leaf) = (node, node);
-        while let Some([left, _]) = self.children(first_leaf) {
-            first_leaf = left;
+    #[test]
+    fn what_the_builder_knows_is_what_clipping_finds() {
+        let mesh = mesh();
+        let tree = Tree::build(&mesh, &BuildOptions::default()).expect("no limits");
+        let known = known_parts(&tree, tree.parts().expect("it was just built"));
+        for (known, found) in known.iter().zip(clipped_parts(&mesh, &tree)) {
+            let is_inner_or_empty = known.is_empty();
+            // Both are larger than the parts by at most some ulps of one.
+            let is_near = |a: f32, b: f32| (a - b).abs() < 1e-5;
+            for axis in 0..3 {
+                assert!(
+                    is_inner_or_empty
+                        || is_near(known.lower[axis], found.lower[axis])
+                            && is_near(known.upper[axis], found.upper[axis]),
+                    "{known:?} {found:?}"
+                );
+            }
         }
-        while let Some([_, right]) = self.children(last_leaf) {
-            last_leaf = right;
+    }
+
+    #[test]
+    fn every_leaf_has_its_blocks() {
+        let mesh = mesh();
+        let tree = Tree::build(&mesh, &BuildOptions::default()).expect("no limits");
+        let layout = collapse(&mesh, &tree);
+        let leaves = layout.wides.iter().flat_map(|wide| wide.children);
+        let mut triangles = Vec::new();
+        for first in leaves.filter_map(Child::block).filter(|first| *first < layout.blocks.len()) {
+            let last = layout.blocks[first..].iter().position(Block::is_last);
+            let last = first + last.expect("a leaf ends");
+            triangles.extend(layout.blocks[first..=last].iter().flat_map(Block::triangles));
         }
-        let start = |leaf: usize| match self.tree.nodes()[leaf].kind() {
-            Kind::Leaf { first, .. } => first,
-            Kind::Inner { .. } => 0,
-        };
-        start(last_leaf) - start(first_leaf) >= LARGE
+        let mut expected = tree.references().to_vec();
+        triangles.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(triangles, expected);
     }
 }

@@ -7,7 +7,6 @@
 use super::block::Block;
 use super::collapse::collapse;
 use crate::geometry::{Aabb, Mesh};
-use crate::memory::with_huge_pages;
 use crate::tree::Tree;
 
 /// Eight boxes, and what is in them. Free places have empty boxes.
@@ -38,11 +37,6 @@ impl Child {
         Self(first as u32 | Self::LEAF)
     }
 
-    /// The same child where wide nodes and blocks start at those.
-    fn moved(self, wides: u32, blocks: u32) -> Self {
-        Self(self.0 + if self.block().is_some() { blocks } else { wides })
-    }
-
     /// The first block of a leaf, or `None` for a wide node.
     #[inline(always)]
     pub(super) fn block(self) -> Option<usize> {
@@ -63,12 +57,6 @@ impl Wide {
             self.bounds[1][axis][place] = bounds.upper[axis];
         }
         self.children[place] = child;
-    }
-
-    /// The same node where the layout of its subtree starts at those wide nodes and blocks.
-    fn moved(mut self, wides: u32, blocks: u32) -> Self {
-        self.children = self.children.map(|child| child.moved(wides, blocks));
-        self
     }
 
     /// Says in which order rays of every octant meet the first `count` children; free places come
@@ -94,18 +82,7 @@ pub(super) struct Layout {
 
 impl Layout {
     pub(super) fn new(mesh: &Mesh, tree: &Tree) -> Self {
-        let Self { wides, blocks } = collapse(mesh, tree);
-        let mut compact = with_huge_pages(wides.len());
-        compact.extend_from_slice(&wides);
-        Self { wides: compact, blocks }
-    }
-
-    /// Adds another layout behind this one; gives the child of that one here.
-    pub(super) fn append(&mut self, child: Child, other: Self) -> Child {
-        let (wides, blocks) = (self.wides.len() as u32, self.blocks.len() as u32);
-        self.wides.extend(other.wides.into_iter().map(|wide| wide.moved(wides, blocks)));
-        self.blocks.extend(other.blocks);
-        child.moved(wides, blocks)
+        collapse(mesh, tree)
     }
 
     /// Where a wide node or the first block of a leaf is in memory, and how long it is.

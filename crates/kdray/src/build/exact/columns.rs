@@ -1,14 +1,14 @@
 //! A few references, column by column.
 
-use super::lanes::{LANES, Lanes, Plain};
+use super::event::position_of;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, detect};
+use super::lanes::{LANES, Lanes, Plain};
 use super::pricing::Pricing;
 use super::set::Set;
 use super::sweep::Candidate;
 use crate::build::NodeCost;
 use crate::geometry::Aabb;
-use super::event::position_of;
 
 /// The most references that columns hold; half as many more would be counted in twice the time.
 pub(super) const MOST: usize = 64;
@@ -334,5 +334,57 @@ fn cheapest_with<L: Lanes>(
 impl Default for Counts {
     fn default() -> Self {
         Self { at: [[[Count::default(); MOST / LANES]; 2]; 3], has_flat: [false; 3] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_keeps_its_order() {
+        let mut columns = Columns::EMPTY;
+        for place in 0..20 {
+            columns.triangles[place] = 100 + place as u32;
+            let number = place as f32;
+            columns.set_bounds(place, &Aabb { lower: [number; 3], upper: [number + 1.0; 3] });
+        }
+        let mut kept = columns.clone();
+        let bits = 1 << 3 | 1 << 4 | 1 << 11 | 1 << 19;
+        columns.keep(bits, &mut kept);
+        columns.retain(bits);
+        for columns in [&kept, &columns] {
+            assert_eq!(columns.triangles[..4], [103, 104, 111, 119]);
+            assert_eq!(columns.upper[2][..8], {
+                let none = f32::NEG_INFINITY;
+                [4.0, 5.0, 12.0, 20.0, none, none, none, none]
+            });
+            assert_eq!(columns.bounds(4), Aabb { lower: [3.0; 3], upper: [20.0; 3] });
+        }
+    }
+
+    #[test]
+    fn sides_and_counts_are_the_same_on_every_processor() {
+        let mut columns = Columns::EMPTY;
+        for place in 0..37_usize {
+            let lower = (place * 7 % 10) as f32;
+            let upper = lower + (place % 3) as f32;
+            columns.set_bounds(place, &Aabb { lower: [lower; 3], upper: [upper; 3] });
+        }
+        let sides = columns.sides(37, 1, 4.0);
+        let plain = sides_with(Plain, &columns.lower[1], &columns.upper[1], 37, 4.0);
+        assert_eq!([sides.below, sides.flat, sides.above], [plain.below, plain.flat, plain.above]);
+        assert_eq!(sides.below | sides.flat | sides.above, (1 << 37) - 1);
+        let (mut counts, mut expected) = (Counts::default(), Counts::default());
+        columns.count(37, &mut counts);
+        count_with(Plain, &columns, 37, &mut expected);
+        for (group, plain) in counts.at.iter().flatten().zip(expected.at.iter().flatten()) {
+            for (count, plain) in group.iter().zip(plain) {
+                assert_eq!(
+                    (count.left, count.flat, count.right),
+                    (plain.left, plain.flat, plain.right)
+                );
+            }
+        }
     }
 }

@@ -82,11 +82,8 @@ impl Event {
 #[inline(always)]
 pub(super) fn events_of(bounds: &Aabb, axis: usize, reference: u32) -> [Event; 2] {
     let (lower, upper) = (bounds.lower[axis], bounds.upper[axis]);
-    let kinds = if lower == upper {
-        [Kind::FlatEnter, Kind::FlatLeave]
-    } else {
-        [Kind::Start, Kind::End]
-    };
+    let kinds =
+        if lower == upper { [Kind::FlatEnter, Kind::FlatLeave] } else { [Kind::Start, Kind::End] };
     [Event::new(lower, kinds[0], reference), Event::new(upper, kinds[1], reference)]
 }
 

@@ -4,10 +4,11 @@
 //! A node goes through the stages of a level: [`sweep`] finds its plane, [`split`] assigns and
 //! clips its references and splits its sorted events. Large nodes own their lists and free them
 //! as soon as their children have theirs; small subtrees run depth-first in one piece of scratch
-//! memory that stays in the cache.
+//! memory that stays in the cache; [`tiny`] ones have no events, for their references are few enough
+//! to be counted at every plane.
 
-mod event;
 mod columns;
+mod event;
 mod lanes;
 mod large;
 mod partition;

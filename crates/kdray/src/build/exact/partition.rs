@@ -32,11 +32,7 @@ pub(super) fn partition(
 /// One event after the other. Branch-free: both lists are written at their end, and the one that
 /// gets the event grows.
 #[inline(always)]
-fn partition_each(
-    events: &[Event],
-    names: &[u32],
-    [left, right]: [&mut [Event]; 2],
-) -> [usize; 2] {
+fn partition_each(events: &[Event], names: &[u32], [left, right]: [&mut [Event]; 2]) -> [usize; 2] {
     let (mut lefts, mut rights) = (0, 0);
     for event in events {
         let name = names[event.reference()];

@@ -75,8 +75,7 @@ impl<L: Lanes> Pricing<L> {
             lanes.multiply(lanes.to_numbers(right), above),
         );
         let both = lanes.to_numbers(lanes.sum(left, right));
-        let tests =
-            lanes.add(lanes.multiply(self.face, both), lanes.multiply(self.girth, volumes));
+        let tests = lanes.add(lanes.multiply(self.face, both), lanes.multiply(self.girth, volumes));
         let full = lanes.add(self.step, tests);
         let is_empty = lanes.or(lanes.is_zero(left), lanes.is_zero(right));
         let price = lanes.select(is_empty, lanes.multiply(full, self.empty_factor), full);

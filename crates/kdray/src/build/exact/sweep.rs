@@ -106,3 +106,62 @@ impl Counter {
         self.right -= LANES as i32 - passed.entering;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::columns::{Columns, Counts, MOST};
+    use super::super::event::events_of;
+    use super::*;
+    use crate::build::Cost;
+
+    /// Bounds on a coarse grid, many of them flat and many in one plane, and their events.
+    fn references(count: usize, seed: u32) -> (Vec<Aabb>, [Vec<Event>; 3]) {
+        let mut state = seed;
+        let mut next = |below: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) % below
+        };
+        let mut bounds = Vec::new();
+        for _ in 0..count {
+            let lower = [0; 3].map(|_| next(9) as f32 - 4.0);
+            let upper = lower.map(|lower| lower + 0.5 * next(4) as f32);
+            bounds.push(Aabb { lower, upper });
+        }
+        let events = [0, 1, 2].map(|axis| {
+            let of = |(name, bounds): (usize, &Aabb)| events_of(bounds, axis, name as u32);
+            let mut events: Vec<Event> = bounds.iter().enumerate().flat_map(of).collect();
+            events.sort_unstable();
+            events
+        });
+        (bounds, events)
+    }
+
+    fn is_same(a: &Option<Candidate>, b: &Option<Candidate>) -> bool {
+        let bits = |c: &Candidate| (c.price.to_bits(), c.axis, c.position.to_bits());
+        a.as_ref().map(bits) == b.as_ref().map(bits)
+    }
+
+    #[test]
+    fn sweeping_counting_and_every_processor_find_the_same_plane() {
+        for seed in 0..300 {
+            let count = 1 + seed as usize % MOST;
+            let (bounds, events) = references(count, seed);
+            let triangles: Vec<u32> = (0..count as u32).collect();
+            let set = Set { triangles: &triangles, events: [&events[0], &events[1], &events[2]] };
+            let node = bounds.iter().fold(Aabb::EMPTY, |all, bounds| all.union(bounds));
+            let cost = NodeCost::new(&Cost::default(), &node);
+            let mut columns = Columns::EMPTY;
+            columns.fill(&set);
+            let mut counts = Counts::default();
+            columns.count(count, &mut counts);
+            let counted = columns.cheapest(count, &counts, &node, &cost);
+            for axis in 0..3 {
+                let swept = sweep(&set, &node, &cost, axis);
+                let pricing = Pricing::new(Plain, &node, &cost, axis);
+                let plain = sweep_with(pricing, set.events[axis], count);
+                assert!(is_same(&swept, &plain), "{swept:?} {plain:?}");
+                assert!(is_same(&swept, &counted[axis]), "{swept:?} {:?}", counted[axis]);
+            }
+        }
+    }
+}

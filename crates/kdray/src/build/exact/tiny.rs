@@ -131,7 +131,9 @@ impl Subtree<'_> {
         columns.keep(left, above);
         columns.retain(right);
         for (reference, parts) in straddlers {
-            for (bits, child, part) in [(left, &mut *above, parts[0]), (right, &mut *columns, parts[1])] {
+            for (bits, child, part) in
+                [(left, &mut *above, parts[0]), (right, &mut *columns, parts[1])]
+            {
                 let before = bits & ((1 << *reference) - 1);
                 if let Some(part) = part {
                     child.set_bounds(before.count_ones() as usize, &part);
