@@ -30,6 +30,8 @@ pub(crate) enum Array {
     Inner,
     /// By chunk: counts; after the scan, those of all chunks before.
     Sums,
+    /// By chunk of events: the lowest price of its planes, inverted.
+    Lows,
     /// By reference: the sides it reaches; then its name in the child.
     Marks,
     /// References on both sides of their node's plane.
@@ -65,7 +67,7 @@ impl Array {
     pub(crate) const COUNT: usize = Self::ALL.len();
 
     /// All of them, in order.
-    pub(crate) const ALL: [Self; 29] = [
+    pub(crate) const ALL: [Self; 30] = [
         Self::Positions,
         Self::Triangles,
         Self::References,
@@ -78,6 +80,7 @@ impl Array {
         Self::Plans,
         Self::Inner,
         Self::Sums,
+        Self::Lows,
         Self::Marks,
         Self::Straddlers,
         Self::Parts,

@@ -11,7 +11,7 @@ pub(crate) const CHOOSE: Kernel = Kernel {
     shader: Shader {
         name: "choose",
         source: include_str!("choose.wgsl"),
-        bindings: &[Uniform, Read, Read, Read, Read, Read, Write],
+        bindings: &[Uniform, Read, Read, Read, Read, Read, Read, Write],
     },
     arrays: &[
         Array::References,
@@ -19,10 +19,11 @@ pub(crate) const CHOOSE: Kernel = Kernel {
         Array::Events,
         Array::Sums,
         Array::Inner,
+        Array::Lows,
         Array::Best,
     ],
     moved: |p| Moved {
-        read: 3 * w(p.events) * 12 + 3 * w(p.nodes) * 48,
+        read: 3 * w(p.events) * 12 + 3 * w(p.event_chunks()) * 4 + 3 * w(p.nodes) * 48,
         written: 3 * w(p.nodes) * 8,
     },
     by: Worker::Invocation,

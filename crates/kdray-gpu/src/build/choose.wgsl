@@ -1,6 +1,7 @@
 // The first plane with the lowest price: of equals the lowest axis, then the lowest position.
 //
-// Twin: `choose.rs`. Indices are inverted, so that the first is the greatest.
+// Twin: `choose.rs`. Indices are inverted, so that the first is the greatest. Chunks in which no plane
+// is as cheap are passed over.
 
 //#import sweep
 
@@ -16,7 +17,8 @@ struct Best {
 @group(0) @binding(3) var<storage> events: array<Event>;
 @group(0) @binding(4) var<storage> sums: array<u32>;
 @group(0) @binding(5) var<storage> inner: array<u32>;
-@group(0) @binding(6) var<storage, read_write> best: array<Best>;
+@group(0) @binding(6) var<storage> lows: array<u32>;
+@group(0) @binding(7) var<storage, read_write> best: array<Best>;
 
 @compute @workgroup_size(256)
 fn choose(
@@ -33,29 +35,27 @@ fn choose(
     let chunk = index % chunks;
     let end = min((chunk + 1u) * CHUNK, 2u * references.count);
     var left = sums[index] - axis * references.count;
-    var slot = NONE;
-    var node: Swept;
-    var lowest = 0u;
-    var found = vec2u(0u);
-    for (var place = chunk * CHUNK; place < end; place++) {
-        let next = references.list[place / 2u].slot;
-        if next != slot {
+    var place = chunk * CHUNK;
+    for (var passed = 0u; passed < CHUNK && place < end; passed++) {
+        let slot = references.list[place / 2u].slot;
+        let node = swept(slot, axis, end);
+        let lowest = best[slot].price;
+        if node.is_open && lowest > 0u && lowest <= lows[index] {
+            var found = vec2u(0u);
+            for (; place < node.end; place++) {
+                let event = events[axis * params.events + place];
+                if price_at(node, event, place, left) == lowest {
+                    let index = ~((axis << AXIS_SHIFT) | place);
+                    let is_flat_left = (event.what & 3u) >= LEAVE;
+                    found = max(found, vec2u(index, select(0u, index, is_flat_left)));
+                }
+                left += event.what & 1u;
+            }
             keep(slot, found);
-            slot = next;
-            node = swept(slot, axis);
-            lowest = best[slot].price;
-            found = vec2u(0u);
         }
-        let event = events[axis * params.events + place];
-        let price = price_at(node, event, place, left);
-        if price > 0u && price == lowest {
-            let index = ~((axis << AXIS_SHIFT) | place);
-            let is_flat_left = (event.what & 3u) >= LEAVE;
-            found = max(found, vec2u(index, select(0u, index, is_flat_left)));
-        }
-        left += event.what & 1u;
+        place = node.end;
+        left = node.first + node.count;
     }
-    keep(slot, found);
 }
 
 fn keep(slot: u32, found: vec2u) {

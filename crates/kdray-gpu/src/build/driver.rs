@@ -229,6 +229,7 @@ impl<E: Executor> Driver<'_, E> {
         }
         self.device.stage("sweep", level.depth);
         self.device.reserve(Array::Sums, 6 * chunks as usize + 1)?;
+        self.device.reserve(Array::Lows, 3 * chunks as usize)?;
         self.device.reserve(Array::Best, words::<Best>(level.nodes))?;
         self.device.reserve(Array::Plans, words::<Plan>(level.nodes))?;
         self.device.clear(Array::Best, words::<Best>(level.nodes))?;

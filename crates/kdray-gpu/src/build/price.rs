@@ -1,4 +1,4 @@
-//! The lowest price of each node's planes.
+//! The lowest price of each node's planes, and of each chunk's.
 
 use super::arrays::{Array, Arrays};
 use super::data::Best;
@@ -11,7 +11,7 @@ pub(crate) const PRICE: Kernel = Kernel {
     shader: Shader {
         name: "price",
         source: include_str!("price.wgsl"),
-        bindings: &[Uniform, Read, Read, Read, Read, Read, Write],
+        bindings: &[Uniform, Read, Read, Read, Read, Read, Write, Write],
     },
     arrays: &[
         Array::References,
@@ -20,10 +20,11 @@ pub(crate) const PRICE: Kernel = Kernel {
         Array::Sums,
         Array::Inner,
         Array::Best,
+        Array::Lows,
     ],
     moved: |p| Moved {
         read: 3 * w(p.events) * 12 + 3 * w(p.nodes) * 36,
-        written: 3 * w(p.nodes) * 4,
+        written: 3 * w(p.nodes) * 4 + 3 * w(p.event_chunks()) * 4,
     },
     by: Worker::Invocation,
     twin,
@@ -31,11 +32,16 @@ pub(crate) const PRICE: Kernel = Kernel {
 
 fn twin(arrays: &mut Arrays, params: &Params) {
     arrays.write(Array::Best, |arrays, best: &mut [Best]| {
-        walk(arrays, params, |priced| {
-            if let Some(price) = priced.price {
-                let best = &mut best[priced.slot].price;
-                *best = (*best).max(!price);
-            }
+        arrays.write(Array::Lows, |arrays, lows: &mut [u32]| {
+            lows[..3 * params.event_chunks() as usize].fill(0);
+            walk(arrays, params, |priced| {
+                if let Some(price) = priced.price {
+                    let best = &mut best[priced.slot].price;
+                    *best = (*best).max(!price);
+                    let low = &mut lows[priced.chunk as usize];
+                    *low = (*low).max(!price);
+                }
+            });
         });
     });
 }

@@ -1,4 +1,4 @@
-// The lowest price of each node's planes.
+// The lowest price of each node's planes, and of each chunk's.
 //
 // Twin: `price.rs`. Prices are inverted, so that the lowest is the greatest.
 
@@ -17,6 +17,7 @@ struct Best {
 @group(0) @binding(4) var<storage> sums: array<u32>;
 @group(0) @binding(5) var<storage> inner: array<u32>;
 @group(0) @binding(6) var<storage, read_write> best: array<Best>;
+@group(0) @binding(7) var<storage, read_write> lows: array<u32>;
 
 @compute @workgroup_size(256)
 fn price(
@@ -33,22 +34,25 @@ fn price(
     let chunk = index % chunks;
     let end = min((chunk + 1u) * CHUNK, 2u * references.count);
     var left = sums[index] - axis * references.count;
-    var slot = NONE;
-    var node: Swept;
-    var lowest = 0u;
-    for (var place = chunk * CHUNK; place < end; place++) {
-        let next = references.list[place / 2u].slot;
-        if next != slot {
+    var lowest_of_all = 0u;
+    var place = chunk * CHUNK;
+    for (var passed = 0u; passed < CHUNK && place < end; passed++) {
+        let slot = references.list[place / 2u].slot;
+        let node = swept(slot, axis, end);
+        if node.is_open {
+            var lowest = 0u;
+            for (; place < node.end; place++) {
+                let event = events[axis * params.events + place];
+                lowest = max(lowest, price_at(node, event, place, left));
+                left += event.what & 1u;
+            }
             keep(slot, lowest);
-            slot = next;
-            node = swept(slot, axis);
-            lowest = 0u;
+            lowest_of_all = max(lowest_of_all, lowest);
         }
-        let event = events[axis * params.events + place];
-        lowest = max(lowest, price_at(node, event, place, left));
-        left += event.what & 1u;
+        place = node.end;
+        left = node.first + node.count;
     }
-    keep(slot, lowest);
+    lows[index] = lowest_of_all;
 }
 
 fn keep(slot: u32, price: u32) {

@@ -23,6 +23,8 @@ use super::kernel::{Params, chunk};
 /// An event and what its plane costs; without one if it is no candidate.
 pub(crate) struct Priced {
     pub(crate) slot: usize,
+    /// Among those of all axes.
+    pub(crate) chunk: u32,
     pub(crate) axis: u32,
     /// Among the events of the axis.
     pub(crate) place: u32,
@@ -47,7 +49,7 @@ pub(crate) fn walk(arrays: &Arrays, params: &Params, mut work: impl FnMut(&Price
             let price = (pieces[slot] == 0)
                 .then(|| price(&nodes[slot], params, axis as usize, [place, left], event))
                 .flatten();
-            work(&Priced { slot, axis, place, event, price });
+            work(&Priced { slot, chunk: index, axis, place, event, price });
             left += u32::from(event.is_left());
         }
     }
