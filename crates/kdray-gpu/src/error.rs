@@ -66,3 +66,11 @@ pub enum GpuError {
         reason: String,
     },
 }
+
+impl GpuError {
+    /// Whether less memory at a time may help.
+    pub(crate) fn is_memory(&self) -> bool {
+        let is_budget = matches!(self, Self::Build(kdray::BuildError::MemoryBudget { .. }));
+        is_budget || matches!(self, Self::OutOfMemory { .. })
+    }
+}

@@ -21,6 +21,9 @@ pub(crate) enum Array {
     /// The nodes of the level.
     Nodes,
     NextNodes,
+    /// By reference of a narrow level that is not the root: its bounds.
+    Bounds,
+    NextBounds,
     /// By node: its cheapest plane.
     Best,
     /// By node: what becomes of it.
@@ -28,6 +31,8 @@ pub(crate) enum Array {
     /// By node: 1 if it is an inner node; then by node the words of the piece that a team made of it.
     /// After the scan, the sums before.
     Inner,
+    /// Words that the teams of the level read, and that they wrote.
+    Moved,
     /// By chunk: counts; after the scan, those of all chunks before.
     Sums,
     /// By chunk of events: the lowest price of its planes, inverted.
@@ -67,7 +72,7 @@ impl Array {
     pub(crate) const COUNT: usize = Self::ALL.len();
 
     /// All of them, in order.
-    pub(crate) const ALL: [Self; 30] = [
+    pub(crate) const ALL: [Self; 33] = [
         Self::Positions,
         Self::Triangles,
         Self::References,
@@ -76,9 +81,12 @@ impl Array {
         Self::NextEvents,
         Self::Nodes,
         Self::NextNodes,
+        Self::Bounds,
+        Self::NextBounds,
         Self::Best,
         Self::Plans,
         Self::Inner,
+        Self::Moved,
         Self::Sums,
         Self::Lows,
         Self::Marks,
@@ -102,9 +110,15 @@ impl Array {
 }
 
 /// The arrays in the CPU's memory.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub(crate) struct Arrays {
     words: [Vec<u32>; Array::COUNT],
+}
+
+impl Default for Arrays {
+    fn default() -> Self {
+        Self { words: [const { Vec::new() }; Array::COUNT] }
+    }
 }
 
 impl Arrays {

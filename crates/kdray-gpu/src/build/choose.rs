@@ -23,8 +23,8 @@ pub(crate) const CHOOSE: Kernel = Kernel {
         Array::Best,
     ],
     moved: |p| Moved {
-        read: 3 * w(p.events) * 12 + 3 * w(p.event_chunks()) * 4 + 3 * w(p.nodes) * 48,
-        written: 3 * w(p.nodes) * 8,
+        read: p.axes() * (w(p.events) * 12 + w(p.nodes) * 48) + w(p.count) * 4,
+        written: p.axes() * w(p.nodes) * 8,
     },
     by: Worker::Invocation,
     twin,

@@ -31,10 +31,11 @@ fn choose(
         return;
     }
     let chunks = chunks_of(params.events);
-    let axis = index / chunks;
+    let lane = index / chunks;
+    let axis = params.base_axis + lane;
     let chunk = index % chunks;
     let end = min((chunk + 1u) * CHUNK, 2u * references.count);
-    var left = sums[index] - axis * references.count;
+    var left = sums[index] - lane * references.count;
     var place = chunk * CHUNK;
     for (var passed = 0u; passed < CHUNK && place < end; passed++) {
         let slot = references.list[place / 2u].slot;
@@ -43,7 +44,7 @@ fn choose(
         if node.is_open && lowest > 0u && lowest <= lows[index] {
             var found = vec2u(0u);
             for (; place < node.end; place++) {
-                let event = events[axis * params.events + place];
+                let event = events[lane * params.events + place];
                 if price_at(node, event, place, left) == lowest {
                     let index = ~((axis << AXIS_SHIFT) | place);
                     let is_flat_left = (event.what & 3u) >= LEAVE;

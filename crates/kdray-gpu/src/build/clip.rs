@@ -5,8 +5,8 @@ use kdray::geometry::{clip, overlap};
 
 use super::arrays::{Array, Arrays};
 use super::data::{NONE, Node, Part, Plan};
+use super::ends::corners;
 use super::kernel::{Kernel, Params, Worker, w};
-use super::root::corners;
 use crate::record::Binding::{Read, Uniform, Write};
 use crate::record::{Kernel as Shader, Moved};
 

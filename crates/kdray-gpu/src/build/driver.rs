@@ -14,7 +14,8 @@ use super::rank::RUN;
 use super::report::LevelReport;
 use super::route::ROUTES;
 use super::{assign, bear, choose, clip, decide, finish, gather, keep, mark, merge, name};
-use super::{pair, place, price, rank, renew, starts, stow, tally};
+use super::{pair, place, price, rank, renew, side, starts, stow, tally};
+use crate::record::Moved;
 
 /// The parts of a finished tree.
 pub(crate) struct Parts {
@@ -60,8 +61,8 @@ pub(crate) fn build<E: Executor>(
         room,
         with_teams,
     };
-    driver.root(mesh)?;
-    driver.levels(Level { nodes: 1, references: triangles, first_record: 0, depth: 0 }, options)?;
+    let root = driver.root(mesh)?;
+    driver.levels(root, options)?;
     let parts = driver.pack()?;
     if let Some(report) = options.progress {
         report(1.0);
@@ -78,12 +79,14 @@ pub(super) struct Level {
     /// Of the nodes.
     pub(super) first_record: u32,
     pub(super) depth: u32,
+    /// Whether it is one node that has no events.
+    pub(super) is_narrow: bool,
 }
 
 /// The arrays of a level.
-const LEVEL: [Array; 3] = [Array::References, Array::Events, Array::Nodes];
-pub(super) const NEXT_LEVEL: [Array; 3] =
-    [Array::NextReferences, Array::NextEvents, Array::NextNodes];
+const LEVEL: [Array; 4] = [Array::References, Array::Events, Array::Nodes, Array::Bounds];
+pub(super) const NEXT_LEVEL: [Array; 4] =
+    [Array::NextReferences, Array::NextEvents, Array::NextNodes, Array::NextBounds];
 
 /// The most records that their indices can name.
 pub(super) const MOST_RECORDS: u32 = (1 << 30) - 1;
@@ -112,6 +115,13 @@ pub(super) fn words<T>(count: u32) -> usize {
 
 pub(super) fn too_large<E: From<BuildError>>() -> E {
     BuildError::TreeTooLarge { what: "nodes", limit: MOST_RECORDS as usize }.into()
+}
+
+impl Level {
+    /// 1 if its references have bounds of their own: those of the root are their triangles'.
+    pub(super) fn has_bounds(&self) -> u32 {
+        u32::from(self.is_narrow && self.depth > 0)
+    }
 }
 
 impl<E: Executor> Driver<'_, E> {
@@ -149,13 +159,16 @@ impl<E: Executor> Driver<'_, E> {
             if options.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
                 return Err(BuildError::Cancelled.into());
             }
+            if level.is_narrow && self.has_room(&level, &parked) {
+                level = self.widen(level)?;
+            }
             while self.is_too_large(&level, &parked) {
                 let [front, back] = self.halve(&level)?;
                 parked.push(back);
                 level = front;
             }
             self.report_progress(&level, &parked, options);
-            if let Some(next) = self.level(level)? {
+            if let Some(next) = self.below(level, &mut parked)? {
                 level = next;
             } else if let Some(next) = parked.pop() {
                 self.device.unpark(&LEVEL);
@@ -164,6 +177,20 @@ impl<E: Executor> Driver<'_, E> {
                 return Ok(());
             }
         }
+    }
+
+    /// Builds a level, and gives the next of its own; of a narrow level the right half waits.
+    fn below(&mut self, level: Level, parked: &mut Vec<Level>) -> Result<Option<Level>, E::Error> {
+        if !level.is_narrow {
+            let next = self.level(level)?;
+            self.descend();
+            return Ok(next);
+        }
+        let children = self.narrow(level)?;
+        Ok(children.map(|[front, back]| {
+            parked.push(back);
+            front
+        }))
     }
 
     /// Says how many of the references known so far have come to a leaf, or how close they are.
@@ -186,14 +213,20 @@ impl<E: Executor> Driver<'_, E> {
     }
 
     /// Splits the nodes of a level and gives the next, if there is one.
-    fn level(&mut self, level: Level) -> Result<Option<Level>, E::Error> {
+    pub(super) fn level(&mut self, level: Level) -> Result<Option<Level>, E::Error> {
         self.params.records = level.first_record;
         self.params.nodes = level.nodes;
         self.params.events = 2 * level.references;
         self.params.depth_left = self.max_depth - level.depth;
         self.params.may_split = u32::from(self.params.depth_left > 0);
         self.levels.push([level.first_record, level.nodes]);
-        self.sweep(level)?;
+        self.device.reserve(Array::Moved, 2)?;
+        self.device.clear(Array::Moved, 2)?;
+        if level.is_narrow {
+            self.sweep_narrow(level)?;
+        } else {
+            self.sweep(level)?;
+        }
         let inner = self.assign(level)?;
         self.finish_leaves(level, inner)?;
         self.params.next_nodes = 2 * inner;
@@ -202,9 +235,10 @@ impl<E: Executor> Driver<'_, E> {
             references: self.params.left + self.params.right + 2 * self.params.straddlers,
             first_record: self.params.next_records,
             depth: level.depth + 1,
+            is_narrow: level.is_narrow,
         };
         self.split(level, next)?;
-        if inner > 0 {
+        if inner > 0 && !level.is_narrow {
             self.sort(next)?;
         }
         self.params.next_records += 2 * inner;
@@ -213,7 +247,6 @@ impl<E: Executor> Driver<'_, E> {
         }
         self.params.finished += self.params.leaf + self.params.piece_words;
         self.done += u64::from(self.params.leaf + self.params.gone);
-        self.descend();
         Ok((inner > 0).then_some(next))
     }
 
@@ -248,13 +281,18 @@ impl<E: Executor> Driver<'_, E> {
         self.device.stage("split", level.depth);
         self.device.reserve(Array::Marks, level.references as usize)?;
         self.device.clear(Array::Marks, level.references as usize)?;
-        self.run(&mark::MARK, 2 * level.references)?;
+        if level.is_narrow {
+            self.run(&side::SIDE, level.references)?;
+        } else {
+            self.run(&mark::MARK, 2 * level.references)?;
+        }
         let chunks = self.params.reference_chunks();
         self.run(&assign::ASSIGN, chunks)?;
         self.device.scan(Array::Sums, ROUTES * chunks + 1)?;
         let mut places: Vec<_> = (0..=ROUTES).map(|way| (Array::Sums, way * chunks)).collect();
         places.extend([1, 2].map(|end| (Array::Inner, end * level.nodes)));
         places.extend(MOST.map(|word| (Array::References, word)));
+        places.extend([0, 1].map(|word| (Array::Moved, word)));
         let read = self.device.read(&places)?;
         let counts: Vec<u32> = read[..6].windows(2).map(|ends| ends[1] - ends[0]).collect();
         self.params.straddlers = counts[0];
@@ -273,6 +311,8 @@ impl<E: Executor> Driver<'_, E> {
             largest_bucket: 2 * read[9],
         });
         self.most_references = read[8];
+        let [read, written] = [read[10], read[11]].map(|words| 4 * u64::from(words));
+        self.device.charge(("finish", level.depth), Moved { read, written });
         Ok(inner)
     }
 

@@ -4,11 +4,14 @@ use kdray::BuildError;
 
 use super::arrays::Array;
 use super::kernel::{Kernel, Params};
+use crate::record::Moved;
 
 /// What runs kernels: a device, or the twins on the CPU.
 pub(crate) trait Executor {
     type Error: From<BuildError>;
 
+    /// Bytes that an array can have.
+    fn most_bytes(&self) -> u64;
     /// Makes the array hold `words` at its start.
     fn upload(&mut self, array: Array, words: &[u32]) -> Result<(), Self::Error>;
     /// Makes room for `words`; what the array held may be lost.
@@ -23,6 +26,8 @@ pub(crate) trait Executor {
     fn unpark(&mut self, arrays: &[Array]);
     /// Zeros at the start of an array.
     fn clear(&mut self, array: Array, words: usize) -> Result<(), Self::Error>;
+    /// Counts what a stage moved beside what its kernels say.
+    fn charge(&mut self, _stage: (&'static str, u32), _moved: Moved) {}
     /// What follows is a part of this stage, at this depth of the tree.
     fn stage(&mut self, name: &'static str, depth: u32);
     fn run(&mut self, kernel: &'static Kernel, params: &Params) -> Result<(), Self::Error>;

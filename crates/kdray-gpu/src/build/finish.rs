@@ -17,7 +17,7 @@ pub(crate) const FINISH: Kernel = Kernel {
     shader: Shader {
         name: "finish",
         source: include_str!("finish.wgsl"),
-        bindings: &[Uniform, Read, Read, Read, Read, Read, Write, Write],
+        bindings: &[Uniform, Read, Read, Read, Read, Read, Write, Write, Write],
     },
     arrays: &[
         Array::Positions,
@@ -27,7 +27,9 @@ pub(crate) const FINISH: Kernel = Kernel {
         Array::Nodes,
         Array::Inner,
         Array::NextEvents,
+        Array::Moved,
     ],
+    // And what teams count themselves.
     moved: |p| Moved { read: w(p.nodes) * 40, written: w(p.nodes) * 4 },
     by: Worker::Team,
     twin,
@@ -40,27 +42,43 @@ fn twin(arrays: &mut Arrays, params: &Params) {
                 let node = &arrays.of::<Node>(Array::Nodes)[slot];
                 let place = (PIECE * node.first) as usize;
                 let words = &mut pieces[place..place + (PIECE * node.count) as usize];
-                inner[params.nodes as usize + slot] = words_of(arrays, params, node, words);
+                let mut piece = Piece { words, room: node.count, nodes: 0, references: 0 };
+                let mut moved = [0; 2];
+                let words = words_of(arrays, params, node, (&mut piece, &mut moved));
+                inner[params.nodes as usize + slot] = words;
+                arrays[Array::Moved][0] += moved[0];
+                arrays[Array::Moved][1] += moved[1];
             }
         });
     });
 }
 
+/// Words of a part: its triangle, its node, and six events.
+const PART_WORDS: u32 = 14;
+
 /// Finishes the subtree of a node. Gives the words of the piece, 0 if that was not to be, or [`NONE`]
 /// if the node is a leaf.
-fn words_of(arrays: &Arrays, params: &Params, node: &Node, words: &mut [u32]) -> u32 {
+fn words_of(
+    arrays: &Arrays,
+    params: &Params,
+    node: &Node,
+    (piece, [read, written]): (&mut Piece, &mut [u32; 2]),
+) -> u32 {
     if node.count > SMALL || !is_open(node, params, &node_cost(node, params)) {
         return 0;
     }
-    let mut piece = Piece { words, room: node.count, nodes: 0, references: 0 };
+    *read = PART_WORDS * node.count;
     let members = members(arrays, params, node);
-    match subtree::finish(arrays, params, node, members, &mut piece) {
+    let finished = subtree::finish(arrays, params, node, members, (piece, read));
+    *written = 2 * piece.nodes + piece.references;
+    match finished {
         None => 0,
         Some(()) if piece.nodes == 1 => NONE,
         Some(()) => {
             let header = [piece.nodes, piece.references];
             piece.words[..2].copy_from_slice(&header);
-            PIECE_HEADER + 2 * header[0] + header[1]
+            *written += PIECE_HEADER;
+            *written
         }
     }
 }

@@ -13,6 +13,18 @@
 @group(0) @binding(5) var<storage> nodes: array<Node>;
 @group(0) @binding(6) var<storage, read_write> inner: array<u32>;
 @group(0) @binding(7) var<storage, read_write> pieces: array<u32>;
+@group(0) @binding(8) var<storage, read_write> moved: Moved;
+
+// Words that all teams read and wrote.
+struct Moved {
+    read: atomic<u32>,
+    written: atomic<u32>,
+}
+
+const PART_WORDS = 14u; // Its triangle, its node, and six events.
+const CORNER_WORDS = 12u; // Vertices of a triangle and their coordinates.
+
+var<workgroup> words_read: u32;
 
 @compute @workgroup_size(TEAM)
 fn finish(
@@ -49,6 +61,9 @@ fn finish(
             share_parts(task, local);
         }
         if local == 0u {
+            if plan.what != LEAF {
+                words_read += 2u * CORNER_WORDS * size(mask(MASK_BOTH));
+            }
             advance(task, plan);
         }
     }
@@ -88,18 +103,25 @@ fn begin(slot: u32, local: u32) {
         waiting_count = 0u;
         current = Task(lower, 0u, upper, node.count, NONE, params.depth_left);
         state = BUSY;
+        words_read = PART_WORDS * node.count;
     }
 }
 
-// Says how large the piece is.
+// Says how large the piece is, and what it took.
 fn end(slot: u32) {
     var words = 0u;
+    var words_written = 2u * piece.nodes + piece.references;
     if state == DONE && piece.nodes == 1u {
         words = NONE;
     } else if state == DONE {
-        words = 2u + 2u * piece.nodes + piece.references;
+        words_written += 2u;
+        words = words_written;
         pieces[piece.start] = piece.nodes;
         pieces[piece.start + 1u] = piece.references;
     }
     inner[params.nodes + slot] = words;
+    if words_read > 0u {
+        atomicAdd(&moved.read, words_read);
+        atomicAdd(&moved.written, words_written);
+    }
 }

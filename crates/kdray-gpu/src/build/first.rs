@@ -1,4 +1,4 @@
-//! The first level: the root, and the events of all triangles, sorted.
+//! The first level: the root. And the events of a node that has none, sorted.
 
 use bytemuck::{bytes_of, cast_slice};
 
@@ -7,16 +7,16 @@ use kdray::build::ordered;
 
 use super::arrays::Array;
 use super::data::{Event, HEADER, Node, Reference};
-use super::driver::{Driver, words};
+use super::driver::{Driver, Level, words};
 use super::executor::Executor;
-use super::{flats, join, root};
+use super::{ends, flats, join, seed};
 
 /// What the events of an axis are sorted in.
 const SORTED: [Array; 4] = [Array::Keys, Array::Values, Array::NextKeys, Array::NextValues];
 
 impl<E: Executor> Driver<'_, E> {
-    /// Makes the root the level. One axis after the other is sorted, so that they share the room.
-    pub(super) fn root(&mut self, mesh: &Mesh) -> Result<(), E::Error> {
+    /// Brings the mesh to the device, and makes the root the level. It has no events yet.
+    pub(super) fn root(&mut self, mesh: &Mesh) -> Result<Level, E::Error> {
         let triangles = self.params.triangles;
         self.device.stage("events", 0);
         self.device.upload(Array::Positions, cast_slice(mesh.positions()))?;
@@ -30,26 +30,49 @@ impl<E: Executor> Driver<'_, E> {
             fresh_first: 0,
             fresh_count: triangles,
         };
-        self.device.upload(Array::NextNodes, cast_slice(bytes_of(&root)))?;
-        self.device.reserve(Array::NextReferences, HEADER + words::<Reference>(triangles))?;
-        self.device.reserve(Array::NextEvents, words::<Event>(6 * triangles))?;
-        self.device.reserve(Array::Sums, triangles as usize + 1)?;
-        for array in SORTED {
-            self.device.reserve(array, 2 * triangles as usize)?;
-        }
-        self.params.next_nodes = 1;
-        self.params.next_events = 2 * triangles;
+        self.device.upload(Array::Nodes, cast_slice(bytes_of(&root)))?;
+        self.device.reserve(Array::References, HEADER + words::<Reference>(triangles))?;
+        self.run(&seed::SEED, triangles.max(1))?;
+        Ok(Level { nodes: 1, references: triangles, first_record: 0, depth: 0, is_narrow: true })
+    }
+
+    /// Gives a narrow level the events of all axes.
+    pub(super) fn widen(&mut self, level: Level) -> Result<Level, E::Error> {
+        self.device.stage("events", level.depth);
+        self.params.has_bounds = level.has_bounds();
+        self.params.base_axis = 0;
+        self.device.reserve(Array::Events, words::<Event>(6 * level.references))?;
         for axis in 0..3 {
-            self.params.axis = axis;
-            self.run(&flats::FLATS, triangles + 1)?;
-            self.device.scan(Array::Sums, triangles + 1)?;
-            self.run(&root::ROOT, triangles.max(1))?;
-            self.device.sort(SORTED, 2 * triangles)?;
-            self.run(&join::JOIN, 2 * triangles)?;
+            self.sort_axis(&level, axis)?;
         }
+        self.free_sorted();
+        self.device.free(Array::Bounds);
+        Ok(Level { is_narrow: false, ..level })
+    }
+
+    /// Makes the events of a node along an axis. One axis after the other is sorted, so that they share
+    /// the room.
+    pub(super) fn sort_axis(&mut self, level: &Level, axis: u32) -> Result<(), E::Error> {
+        let references = level.references;
+        self.params.events = 2 * references;
+        self.params.axis = axis;
+        self.device.reserve(Array::Bounds, 0)?;
+        self.device.reserve(Array::Sums, references as usize + 1)?;
+        for array in SORTED {
+            self.device.reserve(array, 2 * references.max(1) as usize)?;
+        }
+        self.run(&flats::FLATS, references + 1)?;
+        self.device.scan(Array::Sums, references + 1)?;
+        self.run(&ends::ENDS, references.max(1))?;
+        self.device.sort(SORTED, 2 * references)?;
+        let axes = axis - self.params.base_axis + 1;
+        self.device.reserve(Array::Events, words::<Event>(2 * axes * references))?;
+        self.run(&join::JOIN, 2 * references)
+    }
+
+    /// Gives back what the events were sorted in.
+    pub(super) fn free_sorted(&mut self) {
         SORTED.into_iter().for_each(|array| self.device.free(array));
         self.device.free(Array::Sums);
-        self.descend();
-        Ok(())
     }
 }

@@ -1,4 +1,4 @@
-// Which triangles are flat along an axis.
+// Which references of a node are flat along an axis.
 //
 // Twin: `flats.rs`.
 
@@ -7,7 +7,9 @@
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage> positions: array<u32>;
 @group(0) @binding(2) var<storage> triangles: array<u32>;
-@group(0) @binding(3) var<storage, read_write> sums: array<u32>;
+@group(0) @binding(3) var<storage> bounds: array<Part>;
+@group(0) @binding(4) var<storage> references: References;
+@group(0) @binding(5) var<storage, read_write> sums: array<u32>;
 
 @compute @workgroup_size(256)
 fn flats(
@@ -20,7 +22,7 @@ fn flats(
         return;
     }
     sums[index] = 0u;
-    if index < params.triangles {
+    if index < references.count {
         let span = span(index, params.axis);
         sums[index] = u32(span.x == span.y);
     }

@@ -10,7 +10,7 @@ use crate::device::{Buffer, Device};
 use crate::error::GpuError;
 use crate::primitives::radix::{Pairs, Sort};
 use crate::primitives::scan::Scan;
-use crate::record::{Count, Profile, Recording, Work};
+use crate::record::{Count, Moved, Profile, Recording, Work};
 
 /// Runs kernels on a device: notes them down, and submits what it has whenever something is read.
 pub(crate) struct Gpu<'a> {
@@ -72,8 +72,8 @@ impl<'a> Gpu<'a> {
             return Ok(None);
         }
         // Levels grow and shrink a little; not every one needs new buffers.
-        let words = words + words / SLACK;
-        self.allocate(words).map(Some)
+        let slack = (words / SLACK).min((self.most_bytes() / 4).saturating_sub(words));
+        self.allocate(words + slack).map(Some)
     }
 
     /// A buffer of `words`, or a spare one that is not much larger.
@@ -82,7 +82,16 @@ impl<'a> Gpu<'a> {
             self.book(0)?;
             return Ok(buffer);
         }
-        let words = self.spare.generous(words);
+        let most = self.most_bytes();
+        if 4 * words > most {
+            return Err(GpuError::Limit {
+                adapter: self.device.adapter().name.clone(),
+                limit: "binding_bytes",
+                asked: 4 * words,
+                offered: most,
+            });
+        }
+        let words = self.spare.generous(words).min(most / 4);
         self.book(4 * words)?;
         self.device.buffer(self.stage.0, words)
     }
@@ -132,6 +141,10 @@ impl<'a> Gpu<'a> {
 
 impl Executor for Gpu<'_> {
     type Error = GpuError;
+
+    fn most_bytes(&self) -> u64 {
+        self.device.limits().binding_bytes
+    }
 
     fn upload(&mut self, array: Array, words: &[u32]) -> Result<(), GpuError> {
         let mut padded;
@@ -192,6 +205,12 @@ impl Executor for Gpu<'_> {
             self.recording.clear(&self.buffer(array).words(0, words as u64));
         }
         Ok(())
+    }
+
+    fn charge(&mut self, stage: (&'static str, u32), moved: Moved) {
+        if let Some(profile) = &mut self.profile {
+            profile.charge(stage, moved);
+        }
     }
 
     fn stage(&mut self, name: &'static str, depth: u32) {

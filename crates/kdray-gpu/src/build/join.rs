@@ -12,16 +12,16 @@ pub(crate) const JOIN: Kernel = Kernel {
         source: include_str!("join.wgsl"),
         bindings: &[Uniform, Read, Read, Write],
     },
-    arrays: &[Array::Keys, Array::Values, Array::NextEvents],
+    arrays: &[Array::Keys, Array::Values, Array::Events],
     moved: |p| Moved { read: w(p.count) * 8, written: w(p.count) * 8 },
     by: Worker::Invocation,
     twin,
 };
 
 fn twin(arrays: &mut Arrays, params: &Params) {
-    arrays.write(Array::NextEvents, |arrays, events: &mut [Event]| {
+    arrays.write(Array::Events, |arrays, events: &mut [Event]| {
         let pairs = arrays[Array::Keys].iter().zip(&arrays[Array::Values]);
-        let events = &mut events[(params.axis * params.next_events) as usize..];
+        let events = &mut events[((params.axis - params.base_axis) * params.events) as usize..];
         for (event, (&position, &what)) in events.iter_mut().zip(pairs).take(params.count as usize)
         {
             *event = Event { position, what };

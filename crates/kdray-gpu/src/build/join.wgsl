@@ -7,7 +7,7 @@
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage> keys: array<u32>;
 @group(0) @binding(2) var<storage> values: array<u32>;
-@group(0) @binding(3) var<storage, read_write> next_events: array<Event>;
+@group(0) @binding(3) var<storage, read_write> events: array<Event>;
 
 @compute @workgroup_size(256)
 fn join(
@@ -19,5 +19,6 @@ fn join(
     if index >= params.count {
         return;
     }
-    next_events[params.axis * params.next_events + index] = Event(keys[index], values[index]);
+    let start = (params.axis - params.base_axis) * params.events;
+    events[start + index] = Event(keys[index], values[index]);
 }

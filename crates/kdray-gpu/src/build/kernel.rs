@@ -71,7 +71,6 @@ pub(crate) struct Params {
     pub(crate) empty_factor: f32,
     pub(crate) triangles: u32,
     /// Where a part of the level begins.
-    pub(crate) first_reference: u32,
     pub(crate) first_node: u32,
     /// Levels below this one that there may be.
     pub(crate) depth_left: u32,
@@ -79,12 +78,21 @@ pub(crate) struct Params {
     pub(crate) piece_words: u32,
     /// The axis whose events are made.
     pub(crate) axis: u32,
+    /// The axis whose events are the first: of a narrow level, the only one that has some.
+    pub(crate) base_axis: u32,
+    /// 1 if references have bounds of their own.
+    pub(crate) has_bounds: u32,
 }
 
 impl Params {
     /// Chunks of events along an axis.
     pub(crate) fn event_chunks(&self) -> u32 {
         self.events.div_ceil(CHUNK).max(1)
+    }
+
+    /// Axes that are swept, if `count` are all chunks of events.
+    pub(crate) fn axes(&self) -> u64 {
+        w(self.count / self.event_chunks())
     }
 
     /// Chunks of references; an axis has room for two events of each.

@@ -47,11 +47,12 @@ struct Params {
     intersect: u32,
     empty_factor: u32,
     triangles: u32,
-    first_reference: u32,
     first_node: u32,
     depth_left: u32,
     piece_words: u32,
     axis: u32,
+    base_axis: u32,
+    has_bounds: u32,
 }
 
 struct Event {

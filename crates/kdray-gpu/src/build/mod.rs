@@ -7,12 +7,14 @@ mod arrays;
 mod assign;
 mod batches;
 mod bear;
+mod carry;
 mod choose;
 mod clip;
 mod cpu;
 mod data;
 mod decide;
 mod driver;
+mod ends;
 mod executor;
 mod finish;
 mod first;
@@ -27,6 +29,7 @@ mod lockstep;
 mod mark;
 mod merge;
 mod name;
+mod narrow;
 mod offer;
 mod offset;
 mod pack;
@@ -41,8 +44,10 @@ mod rank;
 mod rebuilder;
 mod renew;
 mod report;
-mod root;
 mod route;
+mod seed;
+mod settle;
+mod side;
 mod spare;
 mod starts;
 mod stow;
@@ -85,15 +90,18 @@ pub(crate) const PARTS: &[(&str, &str)] = &[
 
 /// The kernels of the build, in the order of their first use.
 pub(crate) const KERNELS: &[&kernel::Kernel] = &[
+    &seed::SEED,
     &flats::FLATS,
-    &root::ROOT,
+    &ends::ENDS,
     &join::JOIN,
     &finish::FINISH,
     &starts::STARTS,
     &price::PRICE,
     &choose::CHOOSE,
     &decide::DECIDE,
+    &settle::SETTLE,
     &mark::MARK,
+    &side::SIDE,
     &assign::ASSIGN,
     &pair::PAIR,
     &stow::STOW,
@@ -107,6 +115,7 @@ pub(crate) const KERNELS: &[&kernel::Kernel] = &[
     &merge::MERGE,
     &place::PLACE,
     &keep::KEEP,
+    &carry::CARRY,
     &part::PART,
     &weigh::WEIGH,
     &offset::OFFSET,
@@ -118,6 +127,10 @@ const BYTES_PER_TRIANGLE: u64 = 180;
 
 /// The least that a build is given: below that, batches only cost time.
 const LEAST_BYTES: u64 = 4 << 20;
+
+/// How often a build that ran out of memory starts again with less of it in mind, before the last
+/// time, when every batch is as small as it can be.
+const RETRIES: usize = 2;
 
 /// Builds the exact-SAH tree of `mesh` on a device, with the bytes of [`Tree::build`].
 ///
@@ -155,17 +168,37 @@ pub fn build_reported(
     options: &BuildOptions,
     with_profile: bool,
 ) -> Result<(Tree, BuildReport), GpuError> {
-    let spare = spare::Spare::default();
-    let mut gpu = gpu::Gpu::new(device, spare, options.memory_budget, with_profile);
-    build_on(&mut gpu, mesh, options)
+    Ok(build_in(spare::Spare::default, device, mesh, options, with_profile)?.0)
+}
+
+/// Builds in the memory that `spare` gives, and hands it on. Where a level took more than was thought,
+/// and more than there is, it starts again and cuts levels into smaller batches.
+fn build_in(
+    mut spare: impl FnMut() -> spare::Spare,
+    device: &Device,
+    mesh: &Mesh,
+    options: &BuildOptions,
+    with_profile: bool,
+) -> Result<((Tree, BuildReport), spare::Spare), GpuError> {
+    let mut room = budget(mesh, options);
+    for _ in 0..RETRIES {
+        let mut gpu = gpu::Gpu::new(device, spare(), options.memory_budget, with_profile);
+        match build_on(&mut gpu, mesh, options, room) {
+            Err(error) if error.is_memory() => room = room / 4 * 3,
+            built => return built.map(|built| (built, gpu.leave())),
+        }
+    }
+    let mut gpu = gpu::Gpu::new(device, spare(), options.memory_budget, with_profile);
+    build_on(&mut gpu, mesh, options, 0).map(|built| (built, gpu.leave()))
 }
 
 fn build_on(
     gpu: &mut gpu::Gpu,
     mesh: &Mesh,
     options: &BuildOptions,
+    room: u64,
 ) -> Result<(Tree, BuildReport), GpuError> {
-    let parts = driver::build(gpu, mesh, options, budget(mesh, options), true)?;
+    let parts = driver::build(gpu, mesh, options, room, true)?;
     let tree = Tree::from_parts(mesh, parts.nodes, parts.references, options.cost);
     let report = BuildReport {
         peak_bytes: gpu.peak_bytes,

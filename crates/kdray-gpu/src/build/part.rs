@@ -24,17 +24,19 @@ pub(crate) const PART: Kernel = Kernel {
         Array::NextNodes,
     ],
     moved: |p| Moved {
-        read: w(p.count) * 56 + w(p.nodes) * 40,
-        written: w(p.count) * 56 + w(p.nodes) * 40,
+        read: w(p.count) * (8 + 48 * w(1 - p.has_bounds)) + w(p.nodes) * 40,
+        written: w(p.count) * (8 + 48 * w(1 - p.has_bounds)) + w(p.nodes) * 40,
     },
     by: Worker::Invocation,
     twin,
 };
 
 fn twin(arrays: &mut Arrays, params: &Params) {
-    let exact = arrays[Array::References][0] - params.first_reference;
-    let count = exact.min(params.next_events / 2);
-    let first = params.first_reference;
+    let own = params.first_node as usize..(params.first_node + params.nodes) as usize;
+    let nodes = &arrays.of::<Node>(Array::Nodes)[own];
+    let first = nodes[0].first;
+    let count = nodes.iter().map(|node| node.count).sum::<u32>();
+    let axes = if params.has_bounds == 1 { 0..0 } else { 0..3 };
     arrays.write(Array::NextReferences, |arrays, next: &mut [u32]| {
         let [most, most_parts] = MOST.map(|at| arrays[Array::References][at as usize]);
         next[..HEADER].copy_from_slice(&[count, 0, most, most_parts]);
@@ -45,7 +47,7 @@ fn twin(arrays: &mut Arrays, params: &Params) {
         }
     });
     arrays.write(Array::NextEvents, |arrays, next: &mut [Event]| {
-        for axis in 0..3 {
+        for axis in axes {
             for place in 0..2 * count {
                 let from = axis * params.events + 2 * first + place;
                 let event = arrays.of::<Event>(Array::Events)[from as usize];

@@ -1,6 +1,7 @@
 // A range of the level's nodes as a level of its own.
 //
-// Twin: `part.rs`. One invocation a reference and its events, and a node.
+// Twin: `part.rs`. One invocation a reference and its events, and a node. Narrow levels have no
+// events.
 
 //#import level
 
@@ -19,8 +20,9 @@ fn part(
     @builtin(local_invocation_index) local: u32,
 ) {
     let index = invocation(group, groups, local);
-    let first = params.first_reference;
-    let count = min(references.count - first, params.next_events / 2u);
+    let last = params.first_node + params.nodes - 1u;
+    let first = nodes[params.first_node].first;
+    let count = nodes[last].first + nodes[last].count - first;
     if index == 0u {
         next_references.count = count;
         next_references.parts = 0u;
@@ -36,7 +38,7 @@ fn part(
     }
     let reference = references.list[first + index];
     next_references.list[index] = Reference(reference.triangle, reference.slot - params.first_node);
-    for (var axis = 0u; axis < 3u; axis++) {
+    for (var axis = 0u; axis < 3u && params.has_bounds == 0u; axis++) {
         for (var end = 0u; end < 2u; end++) {
             var event = events[axis * params.events + 2u * (first + index) + end];
             event.what -= first << 2u;

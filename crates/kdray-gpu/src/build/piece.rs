@@ -59,7 +59,9 @@ impl Piece<'_> {
             self.words[start..start + references.len()].copy_from_slice(references);
         }
         self.put_node(parent, Record { first: self.references, second: count << 2 | LEAF })?;
-        self.references += count;
+        if has_room {
+            self.references += count;
+        }
         has_room.then_some(())
     }
 }

@@ -23,8 +23,8 @@ pub(crate) const PRICE: Kernel = Kernel {
         Array::Lows,
     ],
     moved: |p| Moved {
-        read: 3 * w(p.events) * 12 + 3 * w(p.nodes) * 36,
-        written: 3 * w(p.nodes) * 4 + 3 * w(p.event_chunks()) * 4,
+        read: p.axes() * (w(p.events) * 12 + w(p.nodes) * 36),
+        written: p.axes() * w(p.nodes) * 4 + w(p.count) * 4,
     },
     by: Worker::Invocation,
     twin,
@@ -33,7 +33,7 @@ pub(crate) const PRICE: Kernel = Kernel {
 fn twin(arrays: &mut Arrays, params: &Params) {
     arrays.write(Array::Best, |arrays, best: &mut [Best]| {
         arrays.write(Array::Lows, |arrays, lows: &mut [u32]| {
-            lows[..3 * params.event_chunks() as usize].fill(0);
+            lows[..params.count as usize].fill(0);
             walk(arrays, params, |priced| {
                 if let Some(price) = priced.price {
                     let best = &mut best[priced.slot].price;

@@ -30,10 +30,11 @@ fn price(
         return;
     }
     let chunks = chunks_of(params.events);
-    let axis = index / chunks;
+    let lane = index / chunks;
+    let axis = params.base_axis + lane;
     let chunk = index % chunks;
     let end = min((chunk + 1u) * CHUNK, 2u * references.count);
-    var left = sums[index] - axis * references.count;
+    var left = sums[index] - lane * references.count;
     var lowest_of_all = 0u;
     var place = chunk * CHUNK;
     for (var passed = 0u; passed < CHUNK && place < end; passed++) {
@@ -42,7 +43,7 @@ fn price(
         if node.is_open {
             var lowest = 0u;
             for (; place < node.end; place++) {
-                let event = events[axis * params.events + place];
+                let event = events[lane * params.events + place];
                 lowest = max(lowest, price_at(node, event, place, left));
                 left += event.what & 1u;
             }

@@ -40,11 +40,12 @@ pub(crate) fn walk(arrays: &Arrays, params: &Params, mut work: impl FnMut(&Price
     let events: &[Event] = arrays.of(Array::Events);
     let count = arrays[Array::References][0];
     let chunks = params.event_chunks();
-    for index in 0..3 * chunks {
-        let axis = index / chunks;
-        let mut left = arrays[Array::Sums][index as usize] - axis * count;
+    for index in 0..params.count {
+        let lane = index / chunks;
+        let axis = params.base_axis + lane;
+        let mut left = arrays[Array::Sums][index as usize] - lane * count;
         for place in chunk(index % chunks, 2 * count) {
-            let event = events[(axis * params.events + place) as usize];
+            let event = events[(lane * params.events + place) as usize];
             let slot = references[place as usize / 2].slot as usize;
             let price = (pieces[slot] == 0)
                 .then(|| price(&nodes[slot], params, axis as usize, [place, left], event))

@@ -3,7 +3,7 @@
 use kdray::{BuildOptions, Mesh, Tree};
 
 use super::spare::Spare;
-use super::{BuildReport, gpu, prepare};
+use super::{BuildReport, prepare};
 use crate::device::Device;
 use crate::error::GpuError;
 
@@ -52,10 +52,9 @@ impl<'a> Rebuilder<'a> {
         mesh: &Mesh,
         options: &BuildOptions,
     ) -> Result<(Tree, BuildReport), GpuError> {
-        let spare = std::mem::replace(&mut self.spare, Spare::kept());
-        let mut gpu = gpu::Gpu::new(self.device, spare, options.memory_budget, false);
-        let built = super::build_on(&mut gpu, mesh, options)?;
-        self.spare = gpu.leave();
+        let spare = || std::mem::replace(&mut self.spare, Spare::kept());
+        let (built, spare) = super::build_in(spare, self.device, mesh, options, false)?;
+        self.spare = spare;
         Ok(built)
     }
 }

@@ -16,7 +16,7 @@ pub(crate) const STARTS: Kernel = Kernel {
         bindings: &[Uniform, Read, Read, Write],
     },
     arrays: &[Array::References, Array::Events, Array::Sums],
-    moved: |p| Moved { read: 3 * w(p.events) * 8, written: 3 * w(p.event_chunks()) * 4 },
+    moved: |p| Moved { read: p.axes() * w(p.events) * 8, written: w(p.count) * 4 },
     by: Worker::Invocation,
     twin,
 };
@@ -25,7 +25,7 @@ fn twin(arrays: &mut Arrays, params: &Params) {
     arrays.write(Array::Sums, |arrays, sums: &mut [u32]| {
         let count = 2 * arrays[Array::References][0];
         let chunks = params.event_chunks();
-        for index in 0..3 * chunks {
+        for index in 0..params.count {
             let events =
                 &arrays.of::<Event>(Array::Events)[(index / chunks * params.events) as usize..];
             let places = chunk(index % chunks, count);

@@ -14,10 +14,9 @@ pub(crate) const STOW: Kernel = Kernel {
         bindings: &[Uniform, Read, Read, Read, Write, Write],
     },
     arrays: &[Array::Nodes, Array::Inner, Array::NextEvents, Array::Plans, Array::Finished],
-    // And what `finish` moved, which nobody knew then: it read events and references, and wrote pieces.
     moved: |p| Moved {
-        read: w(p.nodes) * 20 + w(p.piece_words) * 4 + (w(p.gone) + w(p.leaf)) * 56,
-        written: w(p.nodes) * 4 + w(p.piece_words) * 8,
+        read: w(p.nodes) * 20 + w(p.piece_words) * 4,
+        written: w(p.nodes) * 4 + w(p.piece_words) * 4,
     },
     by: Worker::Team,
     twin,

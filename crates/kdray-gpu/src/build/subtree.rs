@@ -6,10 +6,10 @@ use kdray::geometry::{clip, overlap};
 
 use super::arrays::Arrays;
 use super::data::{FLAT_RIGHT, Node, Record};
+use super::ends::corners;
 use super::kernel::Params;
 use super::offer::choice;
 use super::piece::Piece;
-use super::root::corners;
 
 /// References of a node whose subtree is finished at once, at most.
 ///
@@ -43,13 +43,16 @@ pub(crate) struct Task {
     pub(crate) depth: u32,
 }
 
-/// Finishes the subtree of `node`, or gives up.
+/// Words of a triangle's corners: its vertices and their coordinates.
+const CORNER_WORDS: u32 = 12;
+
+/// Finishes the subtree of `node`, or gives up. Counts the words that are read on the way.
 pub(crate) fn finish(
     arrays: &Arrays,
     params: &Params,
     node: &Node,
     mut members: Vec<Member>,
-    piece: &mut Piece,
+    (piece, words_read): (&mut Piece, &mut u32),
 ) -> Option<()> {
     let mut waiting = Vec::new();
     let mut next = Some(Task { node: *node, first: 0, parent: None, depth: params.depth_left });
@@ -68,6 +71,9 @@ pub(crate) fn finish(
                 |member: &Member| part(arrays, params, &task, plane, flat_right, member)[side];
             own.iter().filter_map(share).collect::<Vec<_>>()
         });
+        let straddles =
+            |member: &&Member| member.lower[axis] < position && member.upper[axis] > position;
+        *words_read += 2 * CORNER_WORDS * own.iter().filter(straddles).count() as u32;
         if members.len() + left.len() + right.len() > ROOM || waiting.len() == WAITING {
             return None;
         }

@@ -26,17 +26,28 @@ pub struct StageProfile {
 
 impl Profile {
     /// Adds a dispatch.
-    pub(super) fn add(&mut self, (name, level): (&'static str, u32), moved: Moved, seconds: f64) {
+    pub(super) fn add(&mut self, stage: (&'static str, u32), moved: Moved, seconds: f64) {
+        self.charge(stage, moved);
+        let stage = self.stage(stage);
+        stage.dispatches += 1;
+        stage.seconds += seconds;
+    }
+
+    /// Adds bytes that no dispatch knew of when it was noted down.
+    pub(crate) fn charge(&mut self, stage: (&'static str, u32), moved: Moved) {
+        let stage = self.stage(stage);
+        stage.moved.read += moved.read;
+        stage.moved.written += moved.written;
+    }
+
+    /// The last of the stages of a name and level.
+    fn stage(&mut self, (name, level): (&'static str, u32)) -> &mut StageProfile {
         let same = |stage: &StageProfile| stage.name == name && stage.level == level;
         let place = self.stages.iter().rposition(same).unwrap_or(self.stages.len());
         if place == self.stages.len() {
             self.stages.push(StageProfile { name, level, ..Default::default() });
         }
-        let stage = &mut self.stages[place];
-        stage.dispatches += 1;
-        stage.moved.read += moved.read;
-        stage.moved.written += moved.written;
-        stage.seconds += seconds;
+        &mut self.stages[place]
     }
 
     /// Adds what a later recording cost.

@@ -90,11 +90,12 @@ fn uniforms_have_the_layout_of_their_structs() {
                 intersect,
                 empty_factor,
                 triangles,
-                first_reference,
                 first_node,
                 depth_left,
                 piece_words,
-                axis
+                axis,
+                base_axis,
+                has_bounds
             }
         );
     }

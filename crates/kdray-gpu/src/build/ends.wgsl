@@ -1,19 +1,20 @@
-// The references of the root, which are all triangles, and their events along an axis, by kind.
+// The events of a node along an axis, by kind; what there is room for beyond them comes last.
 //
-// Twin: `root.rs`.
+// Twin: `ends.rs`.
 
 //#import span
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage> positions: array<u32>;
 @group(0) @binding(2) var<storage> triangles: array<u32>;
-@group(0) @binding(3) var<storage> sums: array<u32>;
-@group(0) @binding(4) var<storage, read_write> references: References;
-@group(0) @binding(5) var<storage, read_write> keys: array<u32>;
-@group(0) @binding(6) var<storage, read_write> values: array<u32>;
+@group(0) @binding(3) var<storage> bounds: array<Part>;
+@group(0) @binding(4) var<storage> references: References;
+@group(0) @binding(5) var<storage> sums: array<u32>;
+@group(0) @binding(6) var<storage, read_write> keys: array<u32>;
+@group(0) @binding(7) var<storage, read_write> values: array<u32>;
 
 @compute @workgroup_size(256)
-fn root(
+fn ends(
     @builtin(workgroup_id) group: vec3u,
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_index) local: u32,
@@ -22,20 +23,15 @@ fn root(
     if index >= params.count {
         return;
     }
-    if index == 0u {
-        references.count = params.triangles;
-        references.parts = params.triangles;
-        references.most = params.triangles;
-        references.most_parts = params.triangles;
-    }
-    if index >= params.triangles {
+    let all = references.count;
+    if index >= all {
+        put(2u * index, NONE, 0u);
+        put(2u * index + 1u, NONE, 0u);
         return;
     }
-    references.list[index] = Reference(index, 0u);
     let span = span(index, params.axis);
     let before = sums[index];
-    let flat_ones = sums[params.triangles];
-    let all = params.triangles;
+    let flat_ones = sums[params.events / 2u];
     if span.x == span.y {
         put(all - flat_ones + before, span.x, (index << 2u) | ENTER);
         put(all + before, span.x, (index << 2u) | LEAVE);
