@@ -58,13 +58,19 @@ impl<E: Executor> Driver<'_, E> {
         self.params.axis = axis;
         self.device.reserve(Array::Bounds, 0)?;
         self.device.reserve(Array::Sums, references as usize + 1)?;
-        for array in SORTED {
-            self.device.reserve(array, 2 * references.max(1) as usize)?;
-        }
         self.run(&flats::FLATS, references + 1)?;
         self.device.scan(Array::Sums, references + 1)?;
+        let [keys, values, next_keys, next_values] = SORTED;
+        for array in [keys, values] {
+            self.device.reserve(array, 2 * references.max(1) as usize)?;
+        }
         self.run(&ends::ENDS, references.max(1))?;
+        self.device.free(Array::Sums);
+        for array in [next_keys, next_values] {
+            self.device.reserve(array, 2 * references.max(1) as usize)?;
+        }
         self.device.sort(SORTED, 2 * references)?;
+        [next_keys, next_values].into_iter().for_each(|array| self.device.free(array));
         let axes = axis - self.params.base_axis + 1;
         self.device.reserve(Array::Events, words::<Event>(2 * axes * references))?;
         self.run(&join::JOIN, 2 * references)

@@ -6,7 +6,7 @@ use super::arrays::Array;
 use super::executor::Executor;
 use super::kernel::{Kernel, Params, Worker};
 use super::spare::Spare;
-use crate::device::{Buffer, Device};
+use crate::device::{Buffer, Device, Watch};
 use crate::error::GpuError;
 use crate::primitives::radix::{Pairs, Sort};
 use crate::primitives::scan::Scan;
@@ -20,8 +20,12 @@ pub(crate) struct Gpu<'a> {
     recording: Recording<'a>,
     stage: (&'static str, u32),
     spare: Spare,
-    /// The most bytes that the build may have at one time, and that it had.
+    /// What was given back, and is there until the work that is noted down is done.
+    leaving: Vec<Watch>,
+    /// The most bytes that the build may have at one time, those that it should keep to, and those
+    /// that it had.
     budget: Option<u64>,
+    aim: u64,
     pub(crate) peak_bytes: u64,
     /// What the work took, if that is asked for.
     pub(crate) profile: Option<Profile>,
@@ -43,17 +47,19 @@ impl<'a> Gpu<'a> {
     pub(crate) fn new(
         device: &'a Device,
         spare: Spare,
-        budget: Option<u64>,
+        (budget, aim): (Option<u64>, u64),
         with_profile: bool,
     ) -> Self {
         Self {
             device,
+            leaving: Vec::new(),
             buffers: [const { None }; Array::COUNT],
             parked: Vec::new(),
             recording: Recording::new(device),
             stage: ("", 0),
             spare,
             budget,
+            aim,
             peak_bytes: 0,
             profile: with_profile.then(Profile::default),
             readbacks: 0,
@@ -99,25 +105,34 @@ impl<'a> Gpu<'a> {
     /// Leaves the array without memory.
     fn retire(&mut self, array: Array) {
         if let Some(buffer) = self.buffers[array as usize].take() {
-            self.spare.put(buffer);
+            self.give_back(buffer);
+        }
+    }
+
+    fn give_back(&mut self, buffer: Buffer) {
+        if let Some(buffer) = self.spare.put(buffer) {
+            self.leaving.push(buffer.watch());
         }
     }
 
     /// Ends the build, and gives what the next one can use.
     pub(crate) fn leave(mut self) -> Spare {
         let left = self.buffers.iter_mut().chain(&mut self.parked).filter_map(Option::take);
-        left.for_each(|buffer| self.spare.put(buffer));
+        left.for_each(|buffer| drop(self.spare.put(buffer)));
         self.spare
     }
 
-    /// Counts bytes that are about to be allocated, or refuses them.
+    /// Counts bytes that are about to be allocated, or refuses them. Where memory is short, the work
+    /// that is noted down is done first, so that what was given back is gone.
     fn book(&mut self, bytes: u64) -> Result<(), GpuError> {
-        let held = self.buffers.iter().chain(&self.parked).flatten().map(Buffer::size_bytes);
-        let used = held.sum::<u64>() + bytes;
-        if self.budget.is_some_and(|budget| used + self.spare.size_bytes() > budget) {
+        if bytes > 0 && !self.leaving.is_empty() && self.held() + bytes > self.aim {
+            self.submit()?;
+            self.device.wait()?;
+        }
+        if self.budget.is_some_and(|budget| self.held() + bytes > budget) {
             self.spare.clear();
         }
-        let needed = used + self.spare.size_bytes();
+        let needed = self.held() + bytes;
         self.peak_bytes = self.peak_bytes.max(needed);
         match self.budget {
             Some(budget) if needed > budget => {
@@ -125,6 +140,14 @@ impl<'a> Gpu<'a> {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Bytes of the device that the build has.
+    fn held(&mut self) -> u64 {
+        self.leaving.retain(|buffer| buffer.size_bytes() > 0);
+        let held = self.buffers.iter().chain(&self.parked).flatten().map(Buffer::size_bytes);
+        let leaving = self.leaving.iter().map(Watch::size_bytes);
+        held.chain(leaving).sum::<u64>() + self.spare.size_bytes()
     }
 
     /// Submits everything noted down.
@@ -177,7 +200,7 @@ impl Executor for Gpu<'_> {
             let old = self.buffers[array as usize].replace(buffer.clone());
             if let Some(old) = old {
                 self.recording.copy(&old, &buffer.words(0, old.size_bytes() / 4));
-                self.spare.put(old);
+                self.give_back(old);
             }
         }
         Ok(())

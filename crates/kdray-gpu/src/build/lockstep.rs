@@ -27,7 +27,7 @@ struct Lockstep<'a> {
 
 impl<'a> Lockstep<'a> {
     fn new(device: &'a Device, scene: &'a str) -> Self {
-        let gpu = Gpu::new(device, Spare::default(), None, false);
+        let gpu = Gpu::new(device, Spare::default(), (None, u64::MAX), false);
         Self { twins: Twins::default(), gpu, scene, seen: Vec::new() }
     }
 

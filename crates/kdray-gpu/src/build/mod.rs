@@ -182,13 +182,14 @@ fn build_in(
 ) -> Result<((Tree, BuildReport), spare::Spare), GpuError> {
     let mut room = budget(mesh, options);
     for _ in 0..RETRIES {
-        let mut gpu = gpu::Gpu::new(device, spare(), options.memory_budget, with_profile);
+        let limits = (options.memory_budget, room);
+        let mut gpu = gpu::Gpu::new(device, spare(), limits, with_profile);
         match build_on(&mut gpu, mesh, options, room) {
             Err(error) if error.is_memory() => room = room / 4 * 3,
             built => return built.map(|built| (built, gpu.leave())),
         }
     }
-    let mut gpu = gpu::Gpu::new(device, spare(), options.memory_budget, with_profile);
+    let mut gpu = gpu::Gpu::new(device, spare(), (options.memory_budget, 0), with_profile);
     build_on(&mut gpu, mesh, options, 0).map(|built| (built, gpu.leave()))
 }
 

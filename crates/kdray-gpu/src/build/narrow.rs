@@ -15,6 +15,7 @@ impl<E: Executor> Driver<'_, E> {
     /// Splits the node of a narrow level, and parks its right child.
     pub(super) fn narrow(&mut self, level: Level) -> Result<Option<[Level; 2]>, E::Error> {
         let Some(next) = self.level(level)? else { return Ok(None) };
+        self.device.free(Array::References);
         self.device.stage("part", level.depth);
         let [left, right] = [self.params.left, self.params.right];
         let [left, right] = [left, right].map(|kept| kept + self.params.straddlers);

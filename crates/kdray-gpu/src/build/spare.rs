@@ -47,10 +47,11 @@ impl Spare {
         if self.buffers.is_some() { words.next_multiple_of(step) } else { words }
     }
 
-    pub(crate) fn put(&mut self, buffer: Buffer) {
-        if let Some(buffers) = &mut self.buffers {
-            buffers.push(buffer);
-        }
+    /// Keeps the buffer, or gives it back.
+    pub(crate) fn put(&mut self, buffer: Buffer) -> Option<Buffer> {
+        let Some(buffers) = &mut self.buffers else { return Some(buffer) };
+        buffers.push(buffer);
+        None
     }
 
     /// Gives the memory back.
@@ -60,7 +61,10 @@ impl Spare {
         }
     }
 
+    /// Bytes of all that it has.
     pub(crate) fn size_bytes(&self) -> u64 {
-        self.buffers.iter().flatten().map(Buffer::size_bytes).sum()
+        let buffers = self.buffers.iter().flatten().chain(&self.counts).map(Buffer::size_bytes);
+        let scan = self.scan.as_ref().map_or(0, Scan::size_bytes);
+        buffers.sum::<u64>() + scan + self.sort.as_ref().map_or(0, Sort::size_bytes)
     }
 }

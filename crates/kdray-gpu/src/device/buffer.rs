@@ -1,8 +1,8 @@
 //! Memory of the device, counted.
 
 use std::num::NonZeroU64;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Weak};
 
 use super::Device;
 use crate::error::GpuError;
@@ -82,7 +82,22 @@ pub(super) fn create(device: &wgpu::Device, label: &'static str, size: u64) -> w
     device.create_buffer(&descriptor)
 }
 
+/// Sees whether a buffer's memory is still there.
+#[derive(Debug)]
+pub(crate) struct Watch(Weak<Owned>);
+
+impl Watch {
+    /// Bytes of the memory; zero when it is freed.
+    pub(crate) fn size_bytes(&self) -> u64 {
+        self.0.upgrade().map_or(0, |owned| owned.raw.size())
+    }
+}
+
 impl Buffer {
+    pub(crate) fn watch(&self) -> Watch {
+        Watch(Arc::downgrade(&self.owned))
+    }
+
     pub(super) fn own(raw: wgpu::Buffer, memory: &Arc<MemoryUse>) -> Self {
         let size_bytes = raw.size();
         memory.book(size_bytes);

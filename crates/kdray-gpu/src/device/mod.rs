@@ -11,6 +11,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 pub use adapter::{Adapter, Kind, Selection, devices};
+pub(crate) use buffer::Watch;
 pub use buffer::{Buffer, MemoryUse};
 pub use limits::Limits;
 

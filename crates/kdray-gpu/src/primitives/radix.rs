@@ -80,6 +80,12 @@ impl Sort {
         self.tiles.saturating_mul(TILE)
     }
 
+    /// Bytes of the device that it takes.
+    #[must_use]
+    pub fn size_bytes(&self) -> u64 {
+        self.counts.size_bytes() + self.scan.size_bytes()
+    }
+
     /// Sorts the first `count` of `pairs` by the lowest `bits` bits of their keys, equal keys in
     /// their order; the bits above do not matter, or are sorted by as well. `room` is for as many
     /// pairs, and holds rubbish afterwards.

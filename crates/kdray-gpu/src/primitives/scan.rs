@@ -66,6 +66,12 @@ impl Scan {
         self.bound
     }
 
+    /// Bytes of the device that it takes.
+    #[must_use]
+    pub fn size_bytes(&self) -> u64 {
+        self.levels.iter().chain([&self.nowhere]).map(Buffer::size_bytes).sum()
+    }
+
     /// Replaces the first `count` of `values` by the sums of those before each; sums wrap. The sum
     /// of all goes to a word of the buffer `total`, which is not the one that holds a live count.
     ///
