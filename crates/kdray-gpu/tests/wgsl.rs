@@ -91,7 +91,8 @@ fn differences(kernel: &Kernel, module: &naga::Module) -> Vec<String> {
 fn tint_accepts_every_kernel() {
     let found = Command::new("tint").arg("--help").output();
     if found.is_err() {
-        println!("there is no command `tint` here");
+        assert!(std::env::var_os("CI").is_none(), "CI needs the command `tint`");
+        println!("skipped: there is no command `tint` here");
         return;
     }
     let folder = std::env::temp_dir();

@@ -77,8 +77,10 @@ impl<'a> Gpu<'a> {
         if 4 * words <= held {
             return Ok(None);
         }
-        // Levels grow and shrink a little; not every one needs new buffers.
+        // Levels grow and shrink a little; not every one needs new buffers, if there is room for more.
         let slack = (words / SLACK).min((self.most_bytes() / 4).saturating_sub(words));
+        let is_tight = self.held() + 4 * (words + slack) > self.aim;
+        let slack = if is_tight { 0 } else { slack };
         self.allocate(words + slack).map(Some)
     }
 

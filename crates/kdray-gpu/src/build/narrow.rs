@@ -1,7 +1,7 @@
 //! Nodes that are too large for the events of all axes at once.
 //!
 //! A level is *narrow* if it is one node whose references have bounds, and no events. These are made
-//! for one axis at a time, swept, and given back: 44 bytes a reference, where a level with events and
+//! for one axis at a time, swept, and given back: 64 bytes a reference, where a level with events and
 //! its children take 130. Children are narrow levels of their own, until there is room for their
 //! events. It takes sorting each anew, and gives the same planes.
 
@@ -88,6 +88,7 @@ impl<E: Executor> Driver<'_, E> {
             self.run(&price::PRICE, chunks)?;
             self.run(&choose::CHOOSE, chunks)?;
             self.run(&settle::SETTLE, 1)?;
+            self.device.free(Array::Events);
         }
         if axes.is_empty() {
             self.device.reserve(Array::Events, 0)?;

@@ -90,3 +90,13 @@ fn live_counts_of_values_and_segments_are_kept_to() {
         assert_eq!(device.read::<u32>(&minima).unwrap(), expected, "{count}");
     }
 }
+
+/// As many as a binding of every device holds. Takes a minute on two idle cores.
+#[test]
+#[ignore = "long"]
+fn tens_of_millions_have_a_least() {
+    let mut random = Random::new(18);
+    let size = 30_000_000;
+    let values = values(&mut random, size, 1);
+    check(support::lavapipe(), &values, 1, &support::segments(&mut random, size));
+}

@@ -1,5 +1,6 @@
 //! Compaction, against its twin.
 
+use kdray_gpu::Device;
 use kdray_gpu::primitives::compact::{Compaction, kept};
 use kdray_gpu::primitives::scan::Scan;
 use kdray_gpu::record::{Count, Recording, TILE, WORKGROUP};
@@ -72,8 +73,10 @@ fn compactions_follow_each_other_without_the_host() {
 /// A value an invocation, and more workgroups than a row of the grid has.
 #[test]
 fn more_workgroups_than_a_row_has_are_rows() {
-    let device = support::lavapipe();
-    let size = 65_535 * WORKGROUP + 300;
+    check_many(support::lavapipe(), 65_535 * WORKGROUP + 300);
+}
+
+fn check_many(device: &Device, size: u32) {
     let flags: Vec<u32> = (0..size).map(|i| u32::from(i % 5 == 0)).collect();
     let values: Vec<u32> = (0..size).collect();
     let expected = kept(&flags, &values);
@@ -90,4 +93,11 @@ fn more_workgroups_than_a_row_has_are_rows() {
     recording.run().unwrap();
     assert_eq!(device.read::<u32>(&total).unwrap(), [expected.len() as u32]);
     assert!(device.read::<u32>(&room).unwrap() == expected);
+}
+
+/// As many as a binding of every device holds. Takes a minute on two idle cores.
+#[test]
+#[ignore = "long"]
+fn tens_of_millions_are_compacted() {
+    check_many(support::lavapipe(), 30_000_000);
 }

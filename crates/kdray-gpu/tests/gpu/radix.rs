@@ -104,3 +104,10 @@ fn a_live_count_sorts_what_it_counts() {
         assert!(device.read::<u32>(&values).unwrap() == expected, "{count}");
     }
 }
+
+/// As many as a binding of every device holds. Takes a minute on two idle cores.
+#[test]
+#[ignore = "long"]
+fn tens_of_millions_are_sorted() {
+    check(support::lavapipe(), &Random::new(16).words(30_000_000), 32);
+}

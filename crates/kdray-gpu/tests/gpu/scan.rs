@@ -1,8 +1,10 @@
 //! Scans, against their twin and a plain sum.
 
+use kdray_gpu::Device;
 use kdray_gpu::primitives::scan::{Scan, exclusive};
 use kdray_gpu::record::{Count, Recording, TILE};
 use kdray_test::random::Random;
+use kdray_test::vulkan;
 
 use crate::support;
 
@@ -74,8 +76,20 @@ fn scans_of_live_counts_touch_only_what_is_counted() {
 /// 17 million values are three levels of sums.
 #[test]
 fn scans_of_many_values_have_more_levels() {
-    let device = support::lavapipe();
-    let size = TILE * TILE + 2 * TILE + 1;
+    check_many(support::lavapipe(), TILE * TILE + 2 * TILE + 1);
+}
+
+/// More than the 128 MiB that every device can bind, on one that binds as much. Takes a minute.
+#[test]
+#[ignore = "long"]
+fn values_may_be_as_large_as_a_device_binds() {
+    let name = vulkan::SWIFTSHADER.parse().expect("every word is a selection");
+    vulkan::set_up();
+    let device = Device::open_with_large_buffers(&name).expect("`.ci/vulkan` brings the device");
+    check_many(&device, 40_000_000);
+}
+
+fn check_many(device: &Device, size: u32) {
     let values: Vec<u32> = (0..size).map(|i| i & 3).collect();
     let buffer = device.upload("values", &values).unwrap();
     let mut recording = Recording::new(device);

@@ -41,3 +41,12 @@ fn segments_may_be_all_one_or_all_alone_or_empty() {
     check(device, &values, &[0, 0, 0, 7, 7, size, size, size, size]);
     check(device, &[], &[0, 0, 0]);
 }
+
+/// As many as a binding of every device holds. Takes a minute on two idle cores.
+#[test]
+#[ignore = "long"]
+fn tens_of_millions_are_summed() {
+    let mut random = Random::new(17);
+    let values = random.words(30_000_000);
+    check(support::lavapipe(), &values, &support::segments(&mut random, 30_000_000));
+}
