@@ -3,9 +3,8 @@
 use std::convert::Infallible;
 
 use anyhow::Context;
-use kdray::{Hit, Ray};
-use kdray_gpu::{Device, Kind, Selection, TraceOptions, Tracer};
-use kdray_render::{Caster, CasterError};
+use kdray_gpu::{Device, Kind, Selection};
+use kdray_render::gpu::RenderError;
 
 /// What `--device` says.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,16 +42,12 @@ impl Choice {
     }
 }
 
-/// Traces the rays of pictures on a device.
-pub(crate) struct OnDevice<'a>(pub(crate) Tracer<'a>);
-
-impl Caster for OnDevice<'_> {
-    fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) -> Result<(), CasterError> {
-        Ok(self.0.batch(TraceOptions::default()).closest_hits(rays, hits)?)
-    }
-
-    fn any_hits(&self, rays: &[Ray], found: &mut [bool]) -> Result<(), CasterError> {
-        Ok(self.0.batch(TraceOptions::default()).any_hits(rays, found)?)
+/// What is said of a picture that a device did not make.
+pub(crate) fn no_picture(error: RenderError) -> anyhow::Error {
+    match error {
+        RenderError::Cancelled(cancelled) => cancelled.into(),
+        RenderError::Gpu(error) => error.into(),
+        RenderError::Cost => anyhow::anyhow!("{error}"),
     }
 }
 

@@ -97,9 +97,9 @@ impl Camera {
 
 /// The axes of a camera, those across scaled to the edges of the picture.
 pub(crate) struct Lens {
-    right: Vec3,
-    up: Vec3,
-    forward: Vec3,
+    pub(crate) right: Vec3,
+    pub(crate) up: Vec3,
+    pub(crate) forward: Vec3,
 }
 
 impl Lens {

@@ -14,7 +14,7 @@ const MOST_NEIGHBOURS: usize = 64;
 ///
 /// Corner normals are on the side of their own triangle's normal, whichever way its neighbours are
 /// wound.
-pub(crate) struct Corners(Vec<[[i16; 3]; 3]>);
+pub(crate) struct Corners(pub(crate) Vec<[[i16; 3]; 3]>);
 
 impl Corners {
     pub(crate) fn new(mesh: &Mesh, welded: &[u32]) -> Self {

@@ -7,7 +7,8 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use crate::film::{Film, Pixel, luminance};
+use crate::film::Film;
+use crate::pixel::{Pixel, luminance};
 use crate::{Cancelled, RenderOptions};
 
 /// Passes; each reaches twice as far as the one before.
@@ -124,7 +125,7 @@ fn taps() -> impl Iterator<Item = (isize, isize, f32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::Surface;
+    use crate::pixel::Surface;
 
     /// A wall that is dark on the left and bright on the right, with noise from a hash.
     fn wall(width: u32, contrast: f32) -> Film {

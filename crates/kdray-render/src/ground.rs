@@ -5,10 +5,10 @@ use kdray::{Mesh, Ray};
 
 /// An endless horizontal plane, seen from above only.
 pub(crate) struct Ground {
-    up: Vec3,
-    height: f32,
-    center: Vec3,
-    radius: f32,
+    pub(crate) up: Vec3,
+    pub(crate) height: f32,
+    pub(crate) center: Vec3,
+    pub(crate) radius: f32,
 }
 
 /// How far the ground lies below the mesh's own floor, in radii: the floor covers it.

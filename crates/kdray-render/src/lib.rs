@@ -18,16 +18,18 @@
 //! ```
 
 mod camera;
-mod caster;
 mod components;
 mod corners;
 mod denoise;
 mod film;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 mod ground;
 mod legend;
 mod options;
 mod palette;
 mod picture;
+mod pixel;
 mod point;
 mod probe;
 mod sampler;
@@ -37,12 +39,10 @@ mod sky;
 mod text;
 mod tone;
 mod warp;
-mod waves;
 mod weld;
 
 pub use camera::Camera;
-pub use caster::{Caster, CasterError, RenderError};
 pub use options::{Cancelled, RenderOptions, Shading};
 pub use picture::Picture;
-pub use shade::{render, render_with};
+pub use shade::render;
 pub use sky::{Sky, Sun};

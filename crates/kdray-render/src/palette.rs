@@ -8,8 +8,8 @@ use crate::components::Components;
 /// A colour for each triangle, and one for the ground.
 pub(crate) struct Palette {
     /// For each triangle an index into `colours`; empty if all have the first.
-    of_triangle: Vec<u32>,
-    colours: Vec<Vec3>,
+    pub(crate) of_triangle: Vec<u32>,
+    pub(crate) colours: Vec<Vec3>,
     ground: Vec3,
 }
 

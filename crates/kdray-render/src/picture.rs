@@ -5,7 +5,8 @@ use std::path::Path;
 
 use image::{ImageError, ImageFormat, RgbImage};
 
-use crate::film::{Film, Pixel};
+use crate::film::Film;
+use crate::pixel::Pixel;
 
 /// A picture, and what it took.
 #[derive(Clone, Debug, PartialEq, Eq)]

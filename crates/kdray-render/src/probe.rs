@@ -1,6 +1,6 @@
 //! Rays that are asked for and counted.
 
-use kdray::{Counts, Hit, Ray, Tracer};
+use kdray::{Counts, Ray, Tracer};
 
 use crate::point::Point;
 use crate::scene::Scene;
@@ -8,71 +8,23 @@ use crate::scene::Scene;
 /// Asks the scene and counts what the tree was asked.
 pub(crate) struct Probe<'a> {
     scene: &'a Scene<'a>,
-    answers: Answers<'a>,
+    tracer: &'a Tracer,
     /// Rays that were traced through the tree.
     pub(crate) rays: u64,
     /// Those of them that hit a triangle.
     pub(crate) hits: u64,
 }
 
-/// Where a probe finds its answers.
-enum Answers<'a> {
-    /// It traces.
-    Now(&'a Tracer),
-    /// They were given in this order; what they are not enough for is noted down.
-    Given { given: std::slice::Iter<'a, Answer>, missing: Option<Question> },
-}
-
-/// What became of a ray.
-#[derive(Clone, Copy)]
-pub(crate) enum Answer {
-    Closest(Option<Hit>),
-    Any(bool),
-}
-
-/// What is asked of a ray.
-#[derive(Clone, Copy)]
-pub(crate) enum Question {
-    Closest(Ray),
-    Any(Ray),
-}
-
 impl<'a> Probe<'a> {
-    /// A probe that traces.
     pub(crate) fn new(scene: &'a Scene<'a>, tracer: &'a Tracer) -> Self {
-        Self { scene, answers: Answers::Now(tracer), rays: 0, hits: 0 }
-    }
-
-    /// A probe that knows the first answers. Whatever it is asked beyond them has no hits.
-    pub(crate) fn with_answers(scene: &'a Scene<'a>, given: &'a [Answer]) -> Self {
-        let answers = Answers::Given { given: given.iter(), missing: None };
-        Self { scene, answers, rays: 0, hits: 0 }
-    }
-
-    /// The first question to which it knew no answer.
-    pub(crate) fn missing(&self) -> Option<Question> {
-        match &self.answers {
-            Answers::Now(_) => None,
-            Answers::Given { missing, .. } => *missing,
-        }
+        Self { scene, tracer, rays: 0, hits: 0 }
     }
 
     /// The first surface along the ray.
     pub(crate) fn closest(&mut self, ray: &Ray) -> Option<Point> {
-        let hit = match &mut self.answers {
-            Answers::Now(tracer) => tracer.closest_hit(ray),
-            Answers::Given { given, missing } => match given.next() {
-                Some(Answer::Closest(hit)) => *hit,
-                _ => {
-                    missing.get_or_insert(Question::Closest(*ray));
-                    None
-                }
-            },
-        };
+        let hit = self.tracer.closest_hit(ray);
         self.count(hit.is_some());
-        let t_max = hit.map_or(ray.t_max, |hit| hit.t);
-        let ground = self.scene.ground_point(&Ray { t_max, ..*ray });
-        ground.or_else(|| Some(self.scene.mesh_point(ray, &hit?)))
+        self.scene.point(ray, hit.as_ref())
     }
 
     /// Whether a surface is in the way.
@@ -80,24 +32,14 @@ impl<'a> Probe<'a> {
         if self.scene.ground_point(ray).is_some() {
             return true;
         }
-        let hit = match &mut self.answers {
-            Answers::Now(tracer) => tracer.any_hit(ray),
-            Answers::Given { given, missing } => match given.next() {
-                Some(Answer::Any(hit)) => *hit,
-                _ => {
-                    missing.get_or_insert(Question::Any(*ray));
-                    false
-                }
-            },
-        };
+        let hit = self.tracer.any_hit(ray);
         self.count(hit);
         hit
     }
 
-    /// What the ray costs in the tree; nothing for a probe that does not trace.
+    /// What the ray costs in the tree.
     pub(crate) fn cost(&mut self, ray: &Ray) -> Counts {
-        let Answers::Now(tracer) = self.answers else { return Counts::default() };
-        let (hit, counts) = tracer.closest_hit_counted(ray);
+        let (hit, counts) = self.tracer.closest_hit_counted(ray);
         self.count(hit.is_some());
         counts
     }

@@ -22,7 +22,7 @@ impl Sampler {
 
     /// Of `sample` out of `samples`.
     pub(crate) fn new([x, y]: [u32; 2], sample: u32, samples: u32) -> Self {
-        let sample_bits = samples.clamp(1, Self::MOST_SAMPLES).next_power_of_two().ilog2();
+        let sample_bits = Self::sample_bits(samples);
         let mask = (1 << CURVE_BITS) - 1;
         let along = spread(x & mask) | spread(y & mask) << 1;
         Self {
@@ -31,6 +31,11 @@ impl Sampler {
             curve: hash(x >> CURVE_BITS | y >> CURVE_BITS << 16),
             dimension: 0,
         }
+    }
+
+    /// Bits that tell so many samples apart.
+    pub(crate) fn sample_bits(samples: u32) -> u32 {
+        samples.clamp(1, Self::MOST_SAMPLES).next_power_of_two().ilog2()
     }
 
     /// The next two coordinates, each in 0..1.

@@ -3,7 +3,6 @@
 use glam::Vec3;
 use kdray::{Hit, Mesh, Ray};
 
-use crate::caster::Source;
 use crate::components::Components;
 use crate::corners::{Corners, flat_normal};
 use crate::ground::Ground;
@@ -14,22 +13,16 @@ use crate::{Camera, RenderOptions, Shading};
 
 /// What rays can meet, and how it looks.
 pub(crate) struct Scene<'a> {
-    pub(crate) source: Source<'a>,
     mesh: &'a Mesh,
-    corners: Corners,
-    palette: Palette,
-    ground: Option<Ground>,
+    pub(crate) corners: Corners,
+    pub(crate) palette: Palette,
+    pub(crate) ground: Option<Ground>,
     /// Diagonal of the mesh's box.
     pub(crate) diagonal: f32,
 }
 
 impl<'a> Scene<'a> {
-    pub(crate) fn new(
-        source: Source<'a>,
-        mesh: &'a Mesh,
-        camera: &Camera,
-        options: &RenderOptions,
-    ) -> Self {
+    pub(crate) fn new(mesh: &'a Mesh, camera: &Camera, options: &RenderOptions) -> Self {
         let up = camera.vertical();
         let is_lit = matches!(options.shading, Shading::Ao | Shading::Path);
         let diagonal = Vec3::from(mesh.bounds().extent()).length();
@@ -43,7 +36,14 @@ impl<'a> Scene<'a> {
             }
         }
         let ground = if options.ground && is_lit { Ground::under(mesh, up) } else { None };
-        Self { source, mesh, corners, palette, ground, diagonal }
+        Self { mesh, corners, palette, ground, diagonal }
+    }
+
+    /// Where a ray whose closest hit is known first meets a surface.
+    pub(crate) fn point(&self, ray: &Ray, hit: Option<&Hit>) -> Option<Point> {
+        let t_max = hit.map_or(ray.t_max, |hit| hit.t);
+        let ground = self.ground_point(&Ray { t_max, ..*ray });
+        ground.or_else(|| Some(self.mesh_point(ray, hit?)))
     }
 
     /// Where the ray meets the ground.
@@ -61,7 +61,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Where the ray hits the mesh.
-    pub(crate) fn mesh_point(&self, ray: &Ray, hit: &Hit) -> Point {
+    fn mesh_point(&self, ray: &Ray, hit: &Hit) -> Point {
         let triangle = hit.triangle as usize;
         let direction = Vec3::from(ray.direction);
         let flat = flat_normal(self.mesh, triangle);

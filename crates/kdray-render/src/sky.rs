@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::warp::cone;
+use crate::{Camera, RenderOptions};
 
 /// A sky that changes from horizon to zenith, and perhaps a sun. Colours are linear radiances; 1 is
 /// the white of the picture.
@@ -58,13 +59,19 @@ impl Sky {
 
 /// A sky over a world in which a given direction is up.
 pub(crate) struct Dome {
-    up: Vec3,
-    sky: Sky,
+    pub(crate) up: Vec3,
+    pub(crate) sky: Sky,
     /// Direction, cosine of the radius and strength of the sun.
-    sun: Option<(Vec3, f32, Vec3)>,
+    pub(crate) sun: Option<(Vec3, f32, Vec3)>,
 }
 
 impl Dome {
+    /// The sky of a picture.
+    pub(crate) fn over(camera: &Camera, options: &RenderOptions) -> Self {
+        let toward_viewer = Vec3::from(camera.eye) - Vec3::from(camera.target);
+        Self::new(options.sky, camera.vertical(), toward_viewer)
+    }
+
     /// `toward_viewer` is the direction that the sun's azimuth is counted from.
     pub(crate) fn new(sky: Sky, up: Vec3, toward_viewer: Vec3) -> Self {
         let sun = sky.sun.map(|sun| {

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::film::luminance;
+use crate::pixel::luminance;
 
 /// Where highlights begin to be compressed.
 const SHOULDER: f32 = 0.76;

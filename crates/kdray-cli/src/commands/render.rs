@@ -10,10 +10,11 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 use kdray::{BuildOptions, Mesh, Tracer, Tree};
 use kdray_gpu::Device;
-use kdray_render::{Camera, Picture, RenderError, RenderOptions, Sky, Sun, render_with};
+use kdray_render::gpu::Renderer;
+use kdray_render::{Camera, Picture, RenderOptions, Sky, Sun};
 use serde::Serialize;
 
-use crate::device::{Choice, OnDevice};
+use crate::device::{Choice, no_picture};
 use crate::progress::Progress;
 use crate::sizes::{PictureSize, count, parse_point};
 use crate::{arguments, atomic, cancel, input, output};
@@ -48,9 +49,9 @@ pub(crate) struct Arguments {
     view: View,
     #[command(flatten)]
     build: arguments::Build,
-    /// Where the tree is built and rays are traced: `cpu`, `gpu` for the best one, `auto` for a real GPU
-    /// or else the CPU, or the index or a part of the name of a device in `kdray devices`. Surfaces are
-    /// shaded on the CPU; the picture is the same
+    /// Where the tree is built and the picture made: `cpu`, `gpu` for the best one, `auto` for a real
+    /// GPU or else the CPU, or the index or a part of the name of a device in `kdray devices`. Noise is
+    /// smoothed away on the CPU; the picture is the same up to roundings
     #[arg(long, value_name = "DEVICE", default_value = "cpu", value_parser = Choice::parse)]
     device: Choice,
     #[command(flatten)]
@@ -201,15 +202,10 @@ fn trace(
         let picture = threads.install(|| kdray_render::render(&tracer, mesh, &camera, &options))?;
         return Ok((picture, start.elapsed().as_secs_f64()));
     };
-    let caster = OnDevice(kdray_gpu::Tracer::new(device, mesh, tree)?);
-    caster.0.prepare()?;
+    let mut renderer = Renderer::new(device)?;
     let start = Instant::now();
-    let picture = threads.install(|| render_with(&caster, mesh, &camera, &options));
-    let picture = picture.map_err(|error| match error {
-        RenderError::Cancelled(cancelled) => anyhow::Error::from(cancelled),
-        RenderError::Caster(error) => anyhow::anyhow!(error),
-    })?;
-    Ok((picture, start.elapsed().as_secs_f64()))
+    let picture = threads.install(|| renderer.render(mesh, tree, &camera, &options));
+    Ok((picture.map_err(no_picture)?, start.elapsed().as_secs_f64()))
 }
 
 impl View {

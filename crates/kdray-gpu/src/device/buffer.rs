@@ -7,6 +7,10 @@ use std::sync::{Arc, Weak};
 use super::Device;
 use crate::error::GpuError;
 
+/// Sizes of buffers that are filled again and again: what grows a little finds room more often with
+/// fewer of them, and all take more memory.
+const SIZES_AN_OCTAVE: u64 = 4;
+
 /// Bytes that the buffers of a device take.
 #[derive(Debug, Default)]
 pub struct MemoryUse {
@@ -177,16 +181,48 @@ impl Device {
         label: &'static str,
         data: &[T],
     ) -> Result<Buffer, GpuError> {
-        let bytes: &[u8] = bytemuck::cast_slice(data);
-        let buffer = self.buffer(label, bytes.len().div_ceil(4) as u64)?;
+        let buffer = self.buffer(label, size_of_val(data).div_ceil(4) as u64)?;
+        self.fill(&buffer, bytemuck::cast_slice(data));
+        Ok(buffer)
+    }
+
+    /// Makes `buffer` one that starts with `data` and that kernels can bind: itself if it is large
+    /// enough, or else a new one with some room for more.
+    ///
+    /// # Errors
+    ///
+    /// As [`Device::buffer`], and if kernels may not bind as much at once.
+    pub fn refill<T: bytemuck::NoUninit>(
+        &self,
+        buffer: &mut Buffer,
+        label: &'static str,
+        data: &[T],
+    ) -> Result<(), GpuError> {
+        let (asked, offered) = (size_of_val(data) as u64, self.limits.binding_bytes);
+        if asked > offered {
+            let (adapter, limit) = (self.adapter.name.clone(), "binding_bytes");
+            return Err(GpuError::Limit { adapter, limit, asked, offered });
+        }
+        if asked > buffer.size_bytes() {
+            let words = asked.div_ceil(4);
+            let most = (offered / 4).min(self.limits.buffer_bytes / 4).max(words);
+            let step = (words.next_power_of_two() / SIZES_AN_OCTAVE / 2).max(1);
+            *buffer = self.buffer(label, words.next_multiple_of(step).min(most))?;
+        }
+        self.fill(buffer, bytemuck::cast_slice(data));
+        Ok(())
+    }
+
+    /// Writes bytes to the start of a buffer, filled up to whole words with zeros.
+    fn fill(&self, buffer: &Buffer, bytes: &[u8]) {
         let (whole, rest) = bytes.split_at(bytes.len() / 4 * 4);
-        self.queue.write_buffer(buffer.raw(), 0, whole);
+        self.queue.write_buffer(buffer.raw(), buffer.offset_bytes(), whole);
         if !rest.is_empty() {
             let mut word = [0; 4];
             word[..rest.len()].copy_from_slice(rest);
-            self.queue.write_buffer(buffer.raw(), whole.len() as u64, &word);
+            let end = buffer.offset_bytes() + whole.len() as u64;
+            self.queue.write_buffer(buffer.raw(), end, &word);
         }
-        Ok(buffer)
     }
 
     /// Writes `data`, whole words, to the start of `buffer`, after all work submitted so far.

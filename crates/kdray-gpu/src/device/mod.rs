@@ -17,7 +17,7 @@ pub use limits::Limits;
 
 use crate::error::GpuError;
 use crate::float::Floats;
-use crate::record::Binding;
+use crate::record::{Binding, Kernel};
 
 /// An adapter that was opened.
 ///
@@ -175,6 +175,15 @@ impl Device {
     #[must_use]
     pub fn has_timestamps(&self) -> bool {
         self.raw.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
+    /// Compiles `kernels`, which would otherwise happen when they first run.
+    ///
+    /// # Errors
+    ///
+    /// If a kernel is refused, or the device fails.
+    pub fn compile(&self, kernels: &[&Kernel]) -> Result<(), GpuError> {
+        kernels.iter().try_for_each(|kernel| self.pipeline(kernel).map(|_| ()))
     }
 
     /// How many kernels were compiled since the device was opened.

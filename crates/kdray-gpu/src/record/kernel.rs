@@ -57,13 +57,17 @@ impl Device {
         let is_exact = kernel.source.contains("//#import float\n");
         let floats = if is_exact { self.floats()? } else { Floats::Soft };
         let source = wgsl::compose(kernel.source, floats);
-        let pipeline = self.compile(kernel, &source)?;
+        let pipeline = self.compile_source(kernel, &source)?;
         lock(&self.pipelines).insert(kernel.name, pipeline.clone());
         Ok(pipeline)
     }
 
     /// Compiles `source`, which has its imports, as `kernel`.
-    fn compile(&self, kernel: &Kernel, source: &str) -> Result<wgpu::ComputePipeline, GpuError> {
+    fn compile_source(
+        &self,
+        kernel: &Kernel,
+        source: &str,
+    ) -> Result<wgpu::ComputePipeline, GpuError> {
         let scope = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
         let pipeline = self.create_pipeline(kernel, source);
         match pollster::block_on(scope.pop()) {

@@ -140,7 +140,7 @@ impl Batch<'_> {
                 device.write(buffer, &except[done..done + chunk.len()]);
             }
             let (count, except) = (chunk.len() as u32, of_except.clone());
-            ask(&Rays { rays: of_rays.clone(), except, count }, answers)?;
+            ask(&Rays { rays: of_rays.clone(), except, count, live: None }, answers)?;
             done += chunk.len();
             if let Some(report) = self.options.progress {
                 report(done as f32 / rays.len() as f32);

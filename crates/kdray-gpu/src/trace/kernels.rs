@@ -71,8 +71,10 @@ pub struct Rays {
     pub rays: Buffer,
     /// By ray, a triangle that it does not see, or `u32::MAX`.
     pub except: Option<Buffer>,
-    /// How many they are.
+    /// How many they are at most.
     pub count: u32,
+    /// How many they are, if only the device knows. Up to 255 rays behind them are traced too.
+    pub live: Option<Count>,
 }
 
 impl Rays {
@@ -106,7 +108,7 @@ impl Rays {
         let Scene { nodes, references, positions, triangles, .. } = scene;
         let mut buffers = vec![&self.rays, self.except(), nodes, references, positions, triangles];
         buffers.extend(answers);
-        let work = Work::each(&Count::from(self.count));
+        let work = Work::each(&self.number());
         let params = self.params(scene, is_counted);
         // Without the scene: what is read of that, caches decide.
         recording.dispatch(kernel, &params, &buffers, &work, |rays| Moved {
@@ -115,18 +117,22 @@ impl Rays {
         });
     }
 
+    fn number(&self) -> Count {
+        self.live.clone().unwrap_or_else(|| self.count.into())
+    }
+
     /// Runs a kernel over `count` elements that come of the rays.
     pub(super) fn run(
         &self,
         recording: &mut Recording,
-        (kernel, count): (&'static Kernel, u32),
+        (kernel, count): (&'static Kernel, Count),
         scene: &Scene,
         others: &[&Buffer],
     ) {
         let mut buffers = vec![&self.rays, self.except()];
         buffers.extend(others);
-        let work = Work::each(&Count::from(count));
-        let params = Params { count, ..self.params(scene, false) };
+        let work = Work::each(&count);
+        let params = Params { count: count.bound(), ..self.params(scene, false) };
         recording.dispatch(kernel, &params, &buffers, &work, |count| Moved {
             read: 84 * count,
             written: 16 * count,
@@ -141,7 +147,7 @@ impl Rays {
         [closest_triangles, hits]: [&Buffer; 2],
     ) {
         let others = [&scene.positions, &scene.triangles, closest_triangles, hits];
-        self.run(recording, (&LOCATE, self.count), scene, &others);
+        self.run(recording, (&LOCATE, self.number()), scene, &others);
     }
 
     /// Parts of rays start at a multiple of this.
@@ -155,6 +161,7 @@ impl Rays {
             rays: self.rays.words(8 * first, 8 * u64::from(count)),
             except: self.except.as_ref().map(except),
             count,
+            live: None,
         }
     }
 }

@@ -123,8 +123,8 @@ impl Batch<'_> {
         rays.query(&mut recording, (&MEET, false), scene, &[&starts, &met]);
         let [positions, triangles] = [&scene.positions, &scene.triangles];
         let located = [positions, triangles, &met, &hits];
-        rays.run(&mut recording, (&LOCATE_MET, total), scene, &located);
-        rays.run(&mut recording, (&ORDER, rays.count), scene, &[&starts, &hits, &counts]);
+        rays.run(&mut recording, (&LOCATE_MET, total.into()), scene, &located);
+        rays.run(&mut recording, (&ORDER, rays.count.into()), scene, &[&starts, &hits, &counts]);
         recording.run()?;
         Ok(Found { starts, counts, hits })
     }

@@ -5,8 +5,8 @@ use kdray::{Aabb, Mesh, Tree};
 use crate::device::{Buffer, Device};
 use crate::error::GpuError;
 
-/// Fewest words of a buffer: kernels bind no empty ones.
-const LEAST: usize = 4;
+/// Words of a buffer that nothing is in: kernels bind no empty ones.
+const LEAST: u64 = 4;
 
 /// What queries read.
 #[derive(Clone, Debug)]
@@ -22,15 +22,32 @@ pub(crate) struct Scene {
 
 impl Scene {
     pub(crate) fn upload(device: &Device, mesh: &Mesh, tree: &Tree) -> Result<Self, GpuError> {
-        let bounds = tree.bounds();
-        Ok(Self {
-            nodes: words(device, "nodes", bytemuck::cast_slice(tree.nodes()))?,
-            references: words(device, "references", tree.references())?,
-            positions: words(device, "positions", bytemuck::cast_slice(mesh.positions()))?,
-            triangles: words(device, "triangles", bytemuck::cast_slice(mesh.triangles()))?,
-            reach: bounds.lower.iter().chain(&bounds.upper).fold(0.0, |most, v| v.abs().max(most)),
-            bounds,
-        })
+        let mut scene = Self {
+            nodes: device.buffer("nodes", LEAST)?,
+            references: device.buffer("references", LEAST)?,
+            positions: device.buffer("positions", LEAST)?,
+            triangles: device.buffer("triangles", LEAST)?,
+            bounds: tree.bounds(),
+            reach: 0.0,
+        };
+        scene.replace(device, mesh, tree)?;
+        Ok(scene)
+    }
+
+    /// Brings another scene, in the buffers of the one before where they are large enough.
+    pub(crate) fn replace(
+        &mut self,
+        device: &Device,
+        mesh: &Mesh,
+        tree: &Tree,
+    ) -> Result<(), GpuError> {
+        self.bounds = tree.bounds();
+        let coordinates = self.bounds.lower.iter().chain(&self.bounds.upper);
+        self.reach = coordinates.fold(0.0, |most, v| v.abs().max(most));
+        device.refill(&mut self.nodes, "nodes", tree.nodes())?;
+        device.refill(&mut self.references, "references", tree.references())?;
+        device.refill(&mut self.positions, "positions", mesh.positions())?;
+        device.refill(&mut self.triangles, "triangles", mesh.triangles())
     }
 
     /// Bytes of the device that it takes.
@@ -38,17 +55,4 @@ impl Scene {
         let buffers = [&self.nodes, &self.references, &self.positions, &self.triangles];
         buffers.into_iter().map(Buffer::size_bytes).sum()
     }
-}
-
-/// A buffer that kernels can bind.
-fn words(device: &Device, label: &'static str, words: &[u32]) -> Result<Buffer, GpuError> {
-    let (asked, offered) = (size_of_val(words) as u64, device.limits().binding_bytes);
-    if asked > offered {
-        let (adapter, limit) = (device.adapter().name.clone(), "binding_bytes");
-        return Err(GpuError::Limit { adapter, limit, asked, offered });
-    }
-    let mut padded = [0; LEAST];
-    let count = words.len().min(LEAST);
-    padded[..count].copy_from_slice(&words[..count]);
-    device.upload(label, if words.len() < LEAST { &padded } else { words })
 }

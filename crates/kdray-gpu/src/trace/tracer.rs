@@ -3,7 +3,7 @@
 use kdray::{Mesh, Tree};
 
 use super::batch::{Batch, TraceOptions};
-use super::kernels::{ANY, CLOSEST, Rays};
+use super::kernels::{ANY, CLOSEST, LOCATE, Rays};
 use super::scene::Scene;
 use crate::device::{Buffer, Device};
 use crate::error::GpuError;
@@ -52,7 +52,36 @@ impl<'a> Tracer<'a> {
     ///
     /// If a kernel is refused, or the device fails.
     pub fn prepare(&self) -> Result<(), GpuError> {
-        super::KERNELS.iter().try_for_each(|kernel| self.device.pipeline(kernel).map(|_| ()))
+        self.device.compile(super::KERNELS)
+    }
+
+    /// Compiles the kernels of [`Tracer::record_closest`] and [`Tracer::record_any`] only.
+    ///
+    /// # Errors
+    ///
+    /// As [`Tracer::prepare`].
+    pub fn prepare_first_hits(device: &Device) -> Result<(), GpuError> {
+        device.compile(&[&CLOSEST, &LOCATE, &ANY])
+    }
+
+    /// Takes another mesh and its `tree`, in the memory of those before if there is room.
+    ///
+    /// # Errors
+    ///
+    /// As [`Tracer::new`]; what it answers then is of neither mesh.
+    ///
+    /// # Panics
+    ///
+    /// As [`Tracer::new`].
+    pub fn replace(&mut self, mesh: &Mesh, tree: &Tree) -> Result<(), GpuError> {
+        assert_eq!(mesh.triangles().len(), tree.triangle_count(), "the tree is of another mesh");
+        self.scene.replace(self.device, mesh, tree)
+    }
+
+    /// The mesh on the device: three floats a position, three indices a triangle.
+    #[must_use]
+    pub fn mesh(&self) -> [&Buffer; 2] {
+        [&self.scene.positions, &self.scene.triangles]
     }
 
     /// The device that it is on.

@@ -1,10 +1,11 @@
 //! Ambient occlusion: the part of a surface's surroundings that is open [ZIK98].
 
 use glam::Vec3;
-use kdray::Ray;
+use kdray::{Ray, Tracer};
 
 use super::smoothed;
-use crate::film::{Film, Sample, Surface};
+use crate::film::Film;
+use crate::pixel::{Sample, Surface};
 use crate::probe::Probe;
 use crate::sampler::Sampler;
 use crate::scene::Scene;
@@ -12,17 +13,17 @@ use crate::warp::cosine_hemisphere;
 use crate::{Camera, Cancelled, Picture, RenderOptions, tone};
 
 /// Radiance of a surface with nothing near it.
-const OPEN: Vec3 = Vec3::splat(0.86);
+pub(crate) const OPEN: Vec3 = Vec3::splat(0.86);
 
 /// Radiance of what is behind all surfaces.
-const BACKDROP: Vec3 = Vec3::splat(0.5);
+pub(crate) const BACKDROP: Vec3 = Vec3::splat(0.5);
 
-pub(super) fn picture(
-    scene: &Scene,
+pub(super) fn expose(
+    scene: (&Scene, &Tracer),
     camera: &Camera,
     options: &RenderOptions,
-) -> Result<Picture, Cancelled> {
-    let reach = options.reach * scene.diagonal;
+) -> Result<Film, Cancelled> {
+    let reach = options.reach * scene.0.diagonal;
     let shade = |probe: &mut Probe, ray: &Ray, sampler: &mut Sampler| {
         let Some(point) = probe.closest(ray) else {
             return Sample { light: BACKDROP, surface: None };
@@ -35,6 +36,10 @@ pub(super) fn picture(
             Surface { position: point.position, normal: point.shading, albedo: Vec3::ONE };
         Sample { light, surface: Some(surface) }
     };
-    let film = smoothed(Film::expose(scene, camera, options, shade)?, options)?;
+    Film::expose(scene, camera, options, shade)
+}
+
+pub(super) fn develop(film: Film, options: &RenderOptions) -> Result<Picture, Cancelled> {
+    let film = smoothed(film, options)?;
     Ok(Picture::develop(&film, |pixel| tone::encode(pixel.light)))
 }

@@ -1,9 +1,10 @@
 //! What camera rays cost in the tree.
 
 use glam::Vec3;
-use kdray::Ray;
+use kdray::{Ray, Tracer};
 
-use crate::film::{Film, Sample};
+use crate::film::Film;
+use crate::pixel::Sample;
 use crate::probe::Probe;
 use crate::sampler::Sampler;
 use crate::scene::Scene;
@@ -13,21 +14,24 @@ use crate::{Camera, Cancelled, Picture, RenderOptions, legend};
 const OFF_SCALE: f32 = 0.002;
 
 /// Inner nodes, leaves and blocks of triangles that the rays of a pixel meet, as a heat map.
-pub(super) fn picture(
-    scene: &Scene,
+pub(super) fn expose(
+    scene: (&Scene, &Tracer),
     camera: &Camera,
     options: &RenderOptions,
-) -> Result<Picture, Cancelled> {
+) -> Result<Film, Cancelled> {
     let shade = |probe: &mut Probe, ray: &Ray, _: &mut Sampler| {
         let counts = probe.cost(ray);
         let total = counts.steps + counts.leaves + counts.tests;
         Sample { light: Vec3::splat(total as f32), surface: None }
     };
-    let film = Film::expose(scene, camera, options, shade)?;
+    Film::expose(scene, camera, options, shade)
+}
+
+pub(super) fn develop(film: &Film) -> Picture {
     let most = scale(film.pixels.iter().map(|pixel| pixel.light.x).collect());
-    let mut picture = Picture::develop(&film, |pixel| heat(pixel.light.x / most));
+    let mut picture = Picture::develop(film, |pixel| heat(pixel.light.x / most));
     legend::draw(&mut picture, most, "nodes + triangle blocks a ray");
-    Ok(picture)
+    picture
 }
 
 /// The colour of a value in 0..=1, in even steps of perception.

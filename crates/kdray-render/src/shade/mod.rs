@@ -1,13 +1,12 @@
 //! The ways to shade a picture.
 
-mod ao;
+pub(crate) mod ao;
 mod cost;
-mod normals;
+pub(crate) mod normals;
 mod path;
 
 use kdray::{Mesh, Tracer};
 
-use crate::caster::{Caster, Casting, RenderError, Source};
 use crate::denoise::denoise;
 use crate::film::Film;
 use crate::scene::Scene;
@@ -33,49 +32,24 @@ pub fn render(
     camera: &Camera,
     options: &RenderOptions,
 ) -> Result<Picture, Cancelled> {
-    picture(&Scene::new(Source::Tracer(tracer), mesh, camera, options), camera, options)
-}
-
-/// [`render`] with rays that are traced elsewhere, such as on a GPU. Surfaces are shaded here, on the
-/// threads of the current `rayon` pool.
-///
-/// A caster that gives the hits of [`Tracer`] makes the picture of [`render`], bit for bit.
-///
-/// # Errors
-///
-/// [`RenderError`]: the picture was cancelled, the caster failed, or it was asked for
-/// [`Shading::Cost`], which is about [`Tracer`] only.
-///
-/// # Panics
-///
-/// If the caster gives hits of triangles that the mesh does not have.
-pub fn render_with(
-    caster: &dyn Caster,
-    mesh: &Mesh,
-    camera: &Camera,
-    options: &RenderOptions,
-) -> Result<Picture, RenderError> {
-    if options.shading == Shading::Cost {
-        return Err(RenderError::Caster("only rays on the CPU have their cost shown".into()));
-    }
-    let scene = Scene::new(Source::Caster(Casting::new(caster)), mesh, camera, options);
-    let picture = picture(&scene, camera, options);
-    match scene.source {
-        Source::Caster(casting) => match casting.into_failure() {
-            Some(error) => Err(RenderError::Caster(error)),
-            None => Ok(picture?),
-        },
-        Source::Tracer(_) => Ok(picture?),
-    }
-}
-
-fn picture(scene: &Scene, camera: &Camera, options: &RenderOptions) -> Result<Picture, Cancelled> {
+    let scene = (&Scene::new(mesh, camera, options), tracer);
     options.check_cancelled()?;
+    let film = match options.shading {
+        Shading::Normals => normals::expose(scene, camera, options),
+        Shading::Ao => ao::expose(scene, camera, options),
+        Shading::Path => path::expose(scene, camera, options),
+        Shading::Cost => cost::expose(scene, camera, options),
+    };
+    develop(film?, options)
+}
+
+/// The picture of a film on which light fell.
+pub(crate) fn develop(film: Film, options: &RenderOptions) -> Result<Picture, Cancelled> {
     match options.shading {
-        Shading::Normals => normals::picture(scene, camera, options),
-        Shading::Ao => ao::picture(scene, camera, options),
-        Shading::Path => path::picture(scene, camera, options),
-        Shading::Cost => cost::picture(scene, camera, options),
+        Shading::Normals => Ok(normals::develop(&film)),
+        Shading::Ao => ao::develop(film, options),
+        Shading::Path => path::develop(film, options),
+        Shading::Cost => Ok(cost::develop(&film)),
     }
 }
 

@@ -1,10 +1,11 @@
 //! Path tracing: sun and sky, reflected by matt surfaces [Kaj86].
 
 use glam::Vec3;
-use kdray::Ray;
+use kdray::{Ray, Tracer};
 
 use super::smoothed;
-use crate::film::{Film, Sample, Surface};
+use crate::film::Film;
+use crate::pixel::{Sample, Surface};
 use crate::point::Point;
 use crate::probe::Probe;
 use crate::sampler::Sampler;
@@ -13,13 +14,12 @@ use crate::sky::Dome;
 use crate::warp::cosine_hemisphere;
 use crate::{Camera, Cancelled, Picture, RenderOptions, tone};
 
-pub(super) fn picture(
-    scene: &Scene,
+pub(super) fn expose(
+    scene: (&Scene, &Tracer),
     camera: &Camera,
     options: &RenderOptions,
-) -> Result<Picture, Cancelled> {
-    let toward_viewer = Vec3::from(camera.eye) - Vec3::from(camera.target);
-    let dome = Dome::new(options.sky, camera.vertical(), toward_viewer);
+) -> Result<Film, Cancelled> {
+    let dome = Dome::over(camera, options);
     let shade = |probe: &mut Probe, ray: &Ray, sampler: &mut Sampler| {
         let background = dome.backdrop(Vec3::from(ray.direction));
         let Some(point) = probe.closest(ray) else {
@@ -30,7 +30,11 @@ pub(super) fn picture(
             Surface { position: point.position, normal: point.shading, albedo: point.albedo };
         Sample { light: reflected.lerp(background, point.haze), surface: Some(surface) }
     };
-    let film = smoothed(Film::expose(scene, camera, options, shade)?, options)?;
+    Film::expose(scene, camera, options, shade)
+}
+
+pub(super) fn develop(film: Film, options: &RenderOptions) -> Result<Picture, Cancelled> {
+    let film = smoothed(film, options)?;
     let lightened = || tone::exposure(film.pixels.iter().map(|pixel| pixel.light));
     let exposure = options.exposure.unwrap_or_else(lightened);
     Ok(Picture::develop(&film, |pixel| tone::encode(tone::map(exposure * pixel.light))))

@@ -18,7 +18,6 @@ pub(super) struct Built {
     pub(super) tree: Tree,
     pub(super) build_s: f64,
     pub(super) peak_bytes: u64,
-    pub(super) device: Option<DeviceMemory>,
 }
 
 /// What the device has, and had to do for that since it was opened.
@@ -42,18 +41,22 @@ impl<'a> Builder<'a> {
 
     pub(super) fn build(&mut self, mesh: &Mesh) -> anyhow::Result<Built> {
         let start = Instant::now();
-        let Some((device, rebuilder)) = &mut self.gpu else {
+        let Some((_, rebuilder)) = &mut self.gpu else {
             let (tree, report) = Tree::build_reported(mesh, &self.options)?;
             let build_s = start.elapsed().as_secs_f64();
-            return Ok(Built { tree, build_s, peak_bytes: report.peak_bytes, device: None });
+            return Ok(Built { tree, build_s, peak_bytes: report.peak_bytes });
         };
         let (tree, report) = rebuilder.build(mesh, &self.options)?;
         let build_s = start.elapsed().as_secs_f64();
-        let memory = DeviceMemory {
+        Ok(Built { tree, build_s, peak_bytes: report.peak_bytes })
+    }
+
+    /// What the device has by now.
+    pub(super) fn device_memory(&self) -> Option<DeviceMemory> {
+        self.gpu.as_ref().map(|(device, _)| DeviceMemory {
             device_bytes: device.memory().bytes(),
             allocations: device.memory().allocations(),
             compiled_kernels: device.compiled(),
-        };
-        Ok(Built { tree, build_s, peak_bytes: report.peak_bytes, device: Some(memory) })
+        })
     }
 }

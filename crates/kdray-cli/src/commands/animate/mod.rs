@@ -14,11 +14,12 @@ use anyhow::Context;
 use clap::Args;
 use kdray::{Mesh, Tracer};
 use kdray_mesh::Sequence;
+use kdray_render::gpu::Renderer;
 use kdray_render::{Picture, RenderOptions};
 use serde::Serialize;
 
 use crate::commands::render::{Shading, View};
-use crate::device::Choice;
+use crate::device::{Choice, no_picture};
 use crate::progress::Progress;
 use crate::sizes::{PictureSize, bytes, count};
 use crate::{arguments, cancel, output};
@@ -50,7 +51,7 @@ pub(crate) struct Arguments {
     spp: Option<u32>,
     #[command(flatten)]
     view: View,
-    /// Where trees are built: `cpu`, `gpu` for the best one, `auto` for a real GPU or else the CPU,
+    /// Where trees are built and pictures made: `cpu`, `gpu` for the best one, `auto` for a real GPU or else the CPU,
     /// or the index or a part of the name of a device in `kdray devices`
     #[arg(long, value_name = "DEVICE", default_value = "cpu", value_parser = Choice::parse)]
     device: Choice,
@@ -79,7 +80,7 @@ struct Report {
 #[derive(Serialize)]
 struct FrameReport {
     build_s: f64,
-    /// The tracer's layout and the picture.
+    /// The tracer's layout, or bringing the scene to the device, and the picture.
     trace_s: f64,
     frames_per_s: f64,
     /// The most memory that the build had.
@@ -99,13 +100,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let threads = threads.context("cannot start the threads")?;
     let stage = view::Stage::of(&sequence, arguments)?;
     let mut builder = Builder::new(device.as_ref(), arguments.threads, cancel)?;
+    let mut renderer = device.as_ref().map(Renderer::new).transpose()?;
     let progress = Progress::new("animating");
     let mut frames = Vec::new();
     film.shoot(|film| {
         for index in 0..sequence.frames() {
             let mesh = view::mesh(&sequence, index)?;
             let (picture, report) = threads
-                .install(|| frame(&mesh, &mut builder, &stage, arguments, cancel))
+                .install(|| {
+                    frame(&mesh, &mut builder, renderer.as_mut(), &stage, arguments, cancel)
+                })
                 .with_context(|| format!("frame {index}"))?;
             film.add(&picture)?;
             frames.push(report);
@@ -122,11 +126,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 fn frame(
     mesh: &Mesh,
     builder: &mut Builder,
+    renderer: Option<&mut Renderer>,
     stage: &view::Stage,
     arguments: &Arguments,
     cancel: &AtomicBool,
 ) -> anyhow::Result<(Picture, FrameReport)> {
-    let Built { tree, build_s, peak_bytes, device } = builder.build(mesh)?;
+    let Built { tree, build_s, peak_bytes } = builder.build(mesh)?;
     let options = RenderOptions {
         width: arguments.size.width,
         height: arguments.size.height,
@@ -137,8 +142,11 @@ fn frame(
         ..RenderOptions::default()
     };
     let start = Instant::now();
-    let tracer = Tracer::new(mesh, &tree);
-    let picture = kdray_render::render(&tracer, mesh, &stage.camera(mesh), &options)?;
+    let camera = stage.camera(mesh);
+    let picture = match renderer {
+        None => kdray_render::render(&Tracer::new(mesh, &tree), mesh, &camera, &options)?,
+        Some(renderer) => renderer.render(mesh, &tree, &camera, &options).map_err(no_picture)?,
+    };
     let trace_s = start.elapsed().as_secs_f64();
     let report = FrameReport {
         build_s,
@@ -147,7 +155,7 @@ fn frame(
         peak_bytes,
         tree_bytes: tree.size_bytes(),
         rays: picture.rays,
-        device,
+        device: builder.device_memory(),
     };
     Ok((picture, report))
 }
@@ -185,7 +193,7 @@ impl Report {
         let _ = writeln!(text, "  all{build:11.1}{trace:11.1}{:11.2}", self.frames_per_s);
         let place = self.adapter.as_deref().unwrap_or("the CPU");
         let triangles = count(self.triangles);
-        let _ = writeln!(text, "{}: {triangles} triangles, built on {place}", self.image);
+        let _ = writeln!(text, "{}: {triangles} triangles, on {place}", self.image);
         text
     }
 }
