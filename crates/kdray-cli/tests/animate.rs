@@ -1,9 +1,11 @@
 //! `kdray animate`.
 
+mod alike;
 mod common;
 
 use std::fs;
 
+use alike::assert_alike;
 use common::Bench;
 use image::AnimationDecoder as _;
 use image::codecs::gif::GifDecoder;
@@ -79,7 +81,10 @@ fn a_gpu_gives_the_same_pictures_and_keeps_its_memory() {
     let report: Value = serde_json::from_slice(&output).expect("one JSON value");
     assert_eq!(report["device"], "gpu");
     assert!(report["adapter"].as_str().is_some_and(|name| !name.is_empty()));
-    assert_eq!(pictures(&bench, "cpu"), pictures(&bench, "gpu"));
+    for index in 0..3 {
+        let [cpu, gpu] = ["cpu", "gpu"].map(|place| format!("{place}/frame_{index:04}.png"));
+        assert_alike(&bench.path(&gpu), &bench.path(&cpu));
+    }
     for figure in ["device_bytes", "allocations", "compiled_kernels"] {
         let of = |frame: usize| report["frames"][frame][figure].as_u64().expect(figure);
         assert!(of(0) > 0 && of(0) == of(1) && of(1) == of(2), "{figure}: {report}");

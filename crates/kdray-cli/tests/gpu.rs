@@ -1,9 +1,11 @@
 //! `--device` of `kdray build`, `query` and `render`.
 
+mod alike;
 mod common;
 
 use std::fs;
 
+use alike::assert_alike;
 use common::Bench;
 use kdray_test::vulkan;
 use ndarray::Array2;
@@ -104,9 +106,23 @@ fn the_gpu_makes_the_picture_of_the_cpu() {
         let render = format!("render knot.off --size 60x44 --spp 3 --shading {shading} --json");
         let on_cpu = bench.json(&format!("{render} -o cpu.png"));
         let report = on_gpu(&bench, &format!("{render} -o gpu.png --device {device}"));
-        let read = |name| fs::read(bench.path(name)).expect("it was written");
-        assert!(read("cpu.png") == read("gpu.png"), "{shading}");
-        assert_eq!([&on_cpu["rays"], &on_cpu["hits"]], [&report["rays"], &report["hits"]]);
+        assert_alike(&bench.path("gpu.png"), &bench.path("cpu.png"));
+        for figure in ["rays", "hits"] {
+            let [cpu, gpu] = [&on_cpu, &report].map(|json| json[figure].as_f64().expect(figure));
+            assert!((gpu - cpu).abs() <= 1e-3 * cpu, "{shading}: {gpu} {figure}, not {cpu}");
+        }
         assert_eq!(report["device"], "gpu");
     }
+}
+
+#[test]
+fn what_rays_cost_is_asked_of_the_cpu() {
+    let bench = Bench::new();
+    let device = vulkan::override_name().unwrap_or_else(|| vulkan::LAVAPIPE.to_owned());
+    let render = format!("render knot.off --size 20x20 --shading cost --device {device}");
+    let mut command = bench.kdray(&render);
+    let assert = command.envs(vulkan::environment()).assert().failure();
+    let message = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+    assert_eq!(message, "kdray: error: only rays on the CPU have their cost shown\n");
+    assert_eq!(bench.files(), ["cube.off", "knot.off"]);
 }

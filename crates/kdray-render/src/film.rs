@@ -35,7 +35,7 @@ impl Film {
     where
         S: Fn(&mut Probe, &Ray, &mut Sampler) -> Sample + Sync,
     {
-        let view = View { camera, lens: Lens::new(camera, options.aspect()), options };
+        let view = View::new(camera, options);
         let across = options.width.div_ceil(TILE);
         let tiles = (across * options.height.div_ceil(TILE)) as usize;
         let done = AtomicUsize::new(0);
@@ -79,7 +79,11 @@ pub(crate) struct View<'a> {
     pub(crate) options: &'a RenderOptions<'a>,
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
+    pub(crate) fn new(camera: &'a Camera, options: &'a RenderOptions<'a>) -> Self {
+        Self { camera, lens: Lens::new(camera, options.aspect()), options }
+    }
+
     /// The camera ray of a sample, and the random numbers that are left for it.
     pub(crate) fn sample(&self, [x, y]: [u32; 2], sample: u32) -> (Ray, Sampler) {
         let RenderOptions { width, height, .. } = *self.options;

@@ -31,7 +31,7 @@ use looks::Looks;
 use room::Room;
 use wave::Wave;
 
-/// Samples that are on their way at a time. More of them keep a device busy; fewer take less memory, 350
+/// Samples that are on their way at a time. More of them keep a device busy; fewer take less memory, 304
 /// bytes each, and let a picture be cancelled sooner.
 const WAVE: u32 = 1 << 17;
 

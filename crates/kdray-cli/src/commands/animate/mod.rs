@@ -143,6 +143,8 @@ fn frame(
     };
     let start = Instant::now();
     let camera = stage.camera(mesh);
+    // What rays cost is asked of the tracer on the CPU.
+    let renderer = renderer.filter(|_| options.shading != kdray_render::Shading::Cost);
     let picture = match renderer {
         None => kdray_render::render(&Tracer::new(mesh, &tree), mesh, &camera, &options)?,
         Some(renderer) => renderer.render(mesh, &tree, &camera, &options).map_err(no_picture)?,

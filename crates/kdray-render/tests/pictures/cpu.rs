@@ -1,27 +1,16 @@
-//! Whole pictures, judged by what physics and the options promise.
+//! Pictures of the CPU.
 
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-use kdray::{BuildOptions, Hit, Mesh, Ray, Tracer, Tree};
+use kdray::Mesh;
 use kdray_mesh::{Loaded, generate};
-use kdray_render::{
-    Camera, Cancelled, Caster, CasterError, Picture, RenderError, RenderOptions, Shading, Sky,
-    render, render_with,
-};
+use kdray_render::{Cancelled, RenderOptions, Shading, Sky};
 
-fn small(shading: Shading) -> RenderOptions<'static> {
-    RenderOptions { width: 96, height: 72, shading, ..RenderOptions::default() }
-}
+use crate::support::{picture, small, snapshot};
 
 fn mesh(loaded: &Loaded) -> Mesh {
     loaded.mesh().expect("generated meshes are finite")
-}
-
-fn picture(mesh: &Mesh, options: &RenderOptions) -> Result<Picture, Cancelled> {
-    let tree = Tree::build(mesh, &BuildOptions::default()).expect("nothing limits the build");
-    let camera = Camera::framing_mesh(mesh, Camera::Y_UP, options.aspect());
-    render(&Tracer::new(mesh, &tree), mesh, &camera, options)
 }
 
 fn brightness(pixel: &[u8; 3]) -> u32 {
@@ -72,6 +61,16 @@ fn convex_surfaces_do_not_shadow_themselves() {
 }
 
 #[test]
+fn pictures_are_those_of_the_snapshots() {
+    let mesh = mesh(&generate::showcase(3000));
+    for (shading, name) in
+        [(Shading::Normals, "normals"), (Shading::Ao, "ao"), (Shading::Path, "path")]
+    {
+        snapshot(&picture(&mesh, &small(shading)).expect("not cancelled"), name);
+    }
+}
+
+#[test]
 fn the_picture_does_not_depend_on_the_threads() {
     let mesh = mesh(&generate::showcase(3000));
     for shading in [Shading::Normals, Shading::Ao, Shading::Path, Shading::Cost] {
@@ -108,7 +107,7 @@ fn more_samples_are_less_noise() {
         picture(&mesh, &options).expect("not cancelled")
     };
     let reference = sampled(256, false);
-    let error = |picture: Picture| {
+    let error = |picture: kdray_render::Picture| {
         let pairs = picture.pixels.iter().zip(&reference.pixels);
         let squares = pairs.map(|(a, b)| f64::from(a[1].abs_diff(b[1])).powi(2));
         (squares.sum::<f64>() / picture.pixels.len() as f64).sqrt()
@@ -160,60 +159,4 @@ fn pictures_can_be_watched_and_cancelled() {
     let cancel = AtomicBool::new(true);
     let options = RenderOptions { cancel: Some(&cancel), ..small(Shading::Path) };
     assert_eq!(picture(&mesh, &options), Err(Cancelled));
-}
-
-/// The tracer, many rays at a time. It fails after so many calls.
-struct Waves(Tracer, Mutex<usize>);
-
-impl Waves {
-    fn count(&self) -> Result<(), CasterError> {
-        let mut left = self.1.lock().expect("nobody panics");
-        *left = left.checked_sub(1).ok_or("the cable was cut")?;
-        Ok(())
-    }
-}
-
-impl Caster for Waves {
-    fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) -> Result<(), CasterError> {
-        self.0.closest_hits(rays, hits);
-        self.count()
-    }
-
-    fn any_hits(&self, rays: &[Ray], found: &mut [bool]) -> Result<(), CasterError> {
-        self.0.any_hits(rays, found);
-        self.count()
-    }
-}
-
-#[test]
-fn rays_that_are_traced_many_at_a_time_make_the_same_picture() {
-    let mesh = mesh(&generate::torus_knot([2, 3], 200, 24));
-    let tree = Tree::build(&mesh, &BuildOptions::default()).expect("nothing limits the build");
-    for shading in [Shading::Normals, Shading::Ao, Shading::Path] {
-        // More than one wave, whose last one is shorter.
-        let options = RenderOptions { samples: Some(10), ..small(shading) };
-        let camera = Camera::framing_mesh(&mesh, Camera::Y_UP, options.aspect());
-        let expected = picture(&mesh, &options).expect("not cancelled");
-        let caster = Waves(Tracer::new(&mesh, &tree), Mutex::new(usize::MAX));
-        let found = render_with(&caster, &mesh, &camera, &options).expect("nothing fails");
-        assert!(found.pixels == expected.pixels, "{shading:?}");
-        assert_eq!((found.rays, found.hits), (expected.rays, expected.hits), "{shading:?}");
-    }
-}
-
-#[test]
-fn casters_fail_and_are_cancelled() {
-    let mesh = mesh(&generate::cube());
-    let tree = Tree::build(&mesh, &BuildOptions::default()).expect("nothing limits the build");
-    let camera = Camera::framing_mesh(&mesh, Camera::Y_UP, 1.0);
-    let run = |calls, options: &RenderOptions| {
-        let caster = Waves(Tracer::new(&mesh, &tree), Mutex::new(calls));
-        render_with(&caster, &mesh, &camera, options).map(|picture| picture.rays)
-    };
-    let error = run(3, &small(Shading::Path)).unwrap_err();
-    assert_eq!(error.to_string(), "the cable was cut");
-    assert!(run(9, &small(Shading::Cost)).is_err(), "costs are those of the CPU");
-    let cancel = AtomicBool::new(true);
-    let cancelled = RenderOptions { cancel: Some(&cancel), ..small(Shading::Ao) };
-    assert!(matches!(run(9, &cancelled), Err(RenderError::Cancelled(_))));
 }
