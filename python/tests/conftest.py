@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import ctypes
+import os
+import sys
+import tempfile
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -80,3 +86,43 @@ def sphere():
 @pytest.fixture(scope="session")
 def triangle():
     return kdray.build([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+
+
+DRIVERS = Path(__file__).parents[2] / "target" / "vulkan"
+
+
+@pytest.fixture(scope="session")
+def gpu():
+    """The name of a GPU: that in `KDRAY_TEST_GPU`, or Mesa's program, which `.ci/vulkan` brings."""
+    if named := os.environ.get("KDRAY_TEST_GPU"):
+        return named
+    if sys.platform != "linux":
+        pytest.skip("name a GPU in KDRAY_TEST_GPU")
+    use_drivers()
+    return "llvmpipe"
+
+
+def use_drivers():
+    """Makes software Vulkan known to this process."""
+    manifests = [DRIVERS / name for name in ("lavapipe.json", "swiftshader.json")]
+    assert all(manifest.exists() for manifest in manifests), (
+        "there are no software Vulkan drivers: run .ci/vulkan, or name a GPU in KDRAY_TEST_GPU"
+    )
+    paths = os.pathsep.join(map(str, manifests))
+    # The second name is the one that older loaders know; Mesa complains without a folder.
+    os.environ.update(VK_DRIVER_FILES=paths, VK_ICD_FILENAMES=paths)
+    os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())
+    # Whoever asks for one of these by its name then gets it, as from the library path. They need
+    # each other, in no order that is known.
+    waiting = list((DRIVERS / "lib").iterdir())
+    while waiting:
+        waiting, tried = [path for path in waiting if not can_load(path)], len(waiting)
+        assert len(waiting) < tried, f"cannot load {waiting}"
+
+
+def can_load(path):
+    try:
+        ctypes.CDLL(str(path))
+    except OSError:
+        return False
+    return True

@@ -196,7 +196,8 @@ class TestBuild:
         ("options", "error", "message"),
         [
             ({"builder": "fast"}, ValueError, 'builder is "fast"'),
-            ({"device": "gpu"}, ValueError, "device is 'gpu'"),
+            ({"device": "no such card"}, ValueError, "device: "),
+            ({"device": 1.5}, TypeError, "device is 1.5"),
             ({"cost_traversal": -1.0}, ValueError, "option traversal"),
             ({"cost_intersect": np.nan}, ValueError, "option intersect"),
             ({"empty_bonus": 1.0}, ValueError, "option empty_bonus"),

@@ -1,5 +1,7 @@
 """Answers, against every triangle in numpy; and the shapes and dtypes they come in."""
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -244,3 +246,50 @@ def test_scale_and_distance_do_not_matter(scale, offset):
     np.testing.assert_array_equal(tree.contains(points * scale + shift), near.contains(points))
     distance = tree.closest_point(points * scale + shift).distance / scale
     np.testing.assert_allclose(distance, near.closest_point(points).distance, atol=1e-5)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("offset", [0.0, 1e6])
+def test_many_rays_to_one_light_answer_like_a_few(sphere, dtype, offset):
+    """So many are asked in another order, and answered in the one that they have."""
+    vertices, faces = icosphere(3)
+    tree = kdray.build(vertices + offset, faces)
+    random = np.random.default_rng(11)
+    starts = random.normal(0, 1, (100_003, 3))
+    light = np.array([0.3, 4.0, 0.5])
+    for origins, directions in (
+        (starts, light - starts),
+        (starts * 1.5, np.broadcast_to([0.0, -4.0, 1.0], starts.shape)),
+    ):
+        rays = (origins + offset).astype(dtype), directions.astype(dtype)
+        found, hits = tree.any_hit(*rays, t_max=1.0), tree.closest_hit(*rays, t_min=0.01)
+        assert 0.01 < found.mean() < 0.99
+        for start in range(0, len(starts), 10_000):
+            part = slice(start, start + 10_000)
+            few = rays[0][part], rays[1][part]
+            np.testing.assert_array_equal(tree.any_hit(*few, t_max=1.0), found[part])
+            for column, same in zip(tree.closest_hit(*few, t_min=0.01), hits):
+                np.testing.assert_array_equal(column, same[part])
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_some_rays_without_meaning_among_many(sphere, bad):
+    origins = np.random.default_rng(12).normal(0, 1, (50_000, 3)).astype(np.float32)
+    directions = np.float32([0, 3, 0]) - origins
+    origins[::7, 0], directions[1::7, 1], directions[2::7] = bad, bad, 0
+    found = sphere.any_hit(origins, directions)
+    assert not (found[::7].any() or found[1::7].any() or found[2::7].any())
+    few = slice(20_000, 22_000)
+    np.testing.assert_array_equal(found[few], sphere.any_hit(origins[few], directions[few]))
+    assert found[few].any()
+
+
+def test_many_threads_make_what_a_tree_makes_when_first_asked():
+    """One that waited for another could wait for itself: threads of a pool take up other work."""
+    points = random_rays(2000, dtype=np.float64)[0]
+    for _ in range(20):
+        tree = kdray.build(*icosphere(4))
+        with ThreadPoolExecutor(8) as pool:
+            answers = list(pool.map(tree.winding_number, [points] * 8))
+        for answer in answers:
+            np.testing.assert_array_equal(answer, answers[0])

@@ -1,18 +1,24 @@
 //! Building.
 
-use kdray::{BuildOptions, Builder, Cost};
+use std::sync::Arc;
+
+use kdray::{BuildOptions, Builder, Cost, Mesh};
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 
 use crate::arrays::{Vectors, threes};
+use crate::device::Choice;
 use crate::error;
+use crate::gpu::OnGpu;
 use crate::run::run;
+use crate::scene::Scene;
 use crate::tree::Tree;
 
 /// What a build is told, as a dict.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Options {
+    device: String,
     builder: String,
     cost_traversal: f32,
     cost_intersect: f32,
@@ -36,7 +42,7 @@ impl Tree {
         options: Options,
     ) -> PyResult<Self> {
         let (vertices, faces) = (vertices.vertices()?, threes(&faces)?);
-        let builder = options.builder()?;
+        let (builder, choice) = (options.builder()?, options.choice(py)?);
         run(py, options.threads, options.progress.as_ref(), |watch| {
             let mesh = vertices.mesh(faces)?;
             let report = |fraction| watch.report(fraction);
@@ -51,13 +57,44 @@ impl Tree {
                 progress: Some(&report),
                 cancel: Some(watch.cancel()),
             };
-            let tree = kdray::Tree::build(&mesh, &build_options).map_err(|e| error::build(&e))?;
-            Ok(Self::new(mesh, tree))
+            Self::built(mesh, &build_options, choice)
         })?
     }
 }
 
+impl Tree {
+    fn built(mesh: Mesh, options: &BuildOptions<'_>, choice: Choice) -> PyResult<Self> {
+        if let Choice::Gpu(device) | Choice::Rather(device) = choice {
+            match OnGpu::built(device, &mesh, options) {
+                Ok((tree, gpu)) => {
+                    return Ok(Self { scene: Arc::new(Scene::new(mesh, tree)), gpu: Some(gpu) });
+                }
+                Err(error) if choice.is_final() || error::is_of_build(&error) => {
+                    return Err(error::gpu(&error));
+                }
+                // There is still the CPU.
+                Err(_) => {}
+            }
+        }
+        let tree = kdray::Tree::build(&mesh, options).map_err(|error| error::build(&error))?;
+        Ok(Self::new(mesh, tree))
+    }
+}
+
 impl Options {
+    /// Where to build. Only the CPU has a choice of builders.
+    fn choice(&self, py: Python<'_>) -> PyResult<Choice> {
+        match (self.device.as_str(), self.builder.as_str()) {
+            ("auto", "resort" | "naive") => Ok(Choice::Cpu),
+            (device, builder) => match Choice::of(py, device)? {
+                Choice::Gpu(_) if builder != "exact" => Err(error::value(format!(
+                    "builder is {builder:?}, which is for the CPU; device is {device:?}"
+                ))),
+                choice => Ok(choice),
+            },
+        }
+    }
+
     fn builder(&self) -> PyResult<Builder> {
         match self.builder.as_str() {
             "exact" => Ok(Builder::Exact),

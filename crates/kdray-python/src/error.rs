@@ -4,8 +4,9 @@ use std::io;
 use std::path::Path;
 
 use kdray::BuildError;
+use kdray_gpu::GpuError;
 use kdray_mesh::{LoadError, Reason};
-use pyo3::exceptions::{PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyMemoryError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 
 /// A ValueError that says `error`.
@@ -31,7 +32,26 @@ pub(crate) fn load(error: &LoadError, path: &Path) -> PyErr {
 pub(crate) fn build(error: &BuildError) -> PyErr {
     match error {
         BuildError::MemoryBudget { .. } => PyMemoryError::new_err(error.to_string()),
-        BuildError::Threads { .. } => PyRuntimeError::new_err(error.to_string()),
+        BuildError::Threads { .. } => PyOSError::new_err(error.to_string()),
         _ => value(error),
     }
+}
+
+pub(crate) fn gpu(error: &GpuError) -> PyErr {
+    let message = format!("device: {error}");
+    match error {
+        GpuError::Build(error) => build(error),
+        GpuError::NoAdapter { .. } | GpuError::UnknownAdapter { .. } | GpuError::Batch(_) => {
+            PyValueError::new_err(message)
+        }
+        GpuError::Limit { .. } | GpuError::OutOfMemory { .. } => PyMemoryError::new_err(message),
+        GpuError::Refused { .. } | GpuError::Lost { .. } | GpuError::Driver { .. } => {
+            PyOSError::new_err(message)
+        }
+    }
+}
+
+/// Whether a build would fail on every device.
+pub(crate) fn is_of_build(error: &GpuError) -> bool {
+    matches!(error, GpuError::Build(_))
 }

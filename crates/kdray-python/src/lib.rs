@@ -5,14 +5,22 @@
 
 mod arrays;
 mod build;
+mod columns;
+mod cpu;
+mod device;
+mod each;
 mod error;
 mod file;
 mod generate;
+mod gpu;
 mod mesh;
 mod near;
+mod order;
+mod process;
 mod rays;
 mod render;
 mod run;
+mod scene;
 mod tree;
 
 use pyo3::prelude::*;
@@ -21,6 +29,8 @@ use pyo3::prelude::*;
 mod _kdray {
     use super::{Bound, PyModule, PyModuleMethods, PyResult, pyfunction};
 
+    #[pymodule_export]
+    use super::device::gpus;
     #[pymodule_export]
     use super::file::load;
     #[pymodule_export]

@@ -40,7 +40,7 @@ impl Tree {
         let triangle = flat(&triangle)?;
         let mut normals = zeros(triangle.len())?;
         for (index, normal) in normals.iter_mut().enumerate() {
-            let normal_of = |index| self.mesh.normal(index).unwrap_or_default();
+            let normal_of = |index| self.scene.mesh.normal(index).unwrap_or_default();
             *normal = self.index(triangle[index]).map_or([f32::NAN; 3], normal_of);
         }
         Ok(table(py, normals))
@@ -48,37 +48,43 @@ impl Tree {
 
     /// World coordinates of the vertices.
     fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        let frame = self.mesh.frame();
-        table(py, self.mesh.positions().iter().map(|point| frame.world_point(*point)).collect())
+        let frame = self.scene.mesh.frame();
+        table(
+            py,
+            self.scene.mesh.positions().iter().map(|point| frame.world_point(*point)).collect(),
+        )
     }
 
     fn faces<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<i32>> {
-        table(py, self.mesh.triangles().iter().map(|face| face.map(|index| index as i32)).collect())
+        table(
+            py,
+            self.scene.mesh.triangles().iter().map(|face| face.map(|index| index as i32)).collect(),
+        )
     }
 
     #[getter]
     fn triangle_count(&self) -> usize {
-        self.mesh.triangles().len()
+        self.scene.mesh.triangles().len()
     }
 
     #[getter]
     fn vertex_count(&self) -> usize {
-        self.mesh.positions().len()
+        self.scene.mesh.positions().len()
     }
 
     /// Lower and upper corner of the mesh's box.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        let kdray::Aabb { lower, upper } = self.mesh.bounds();
-        table(py, [lower, upper].map(|corner| self.mesh.frame().world_point(corner)).to_vec())
+        let kdray::Aabb { lower, upper } = self.scene.mesh.bounds();
+        table(py, [lower, upper].map(|corner| self.scene.mesh.frame().world_point(corner)).to_vec())
     }
 }
 
 impl Tree {
     /// World coordinates of a triangle's corners, if there is such a triangle.
     fn corners(&self, triangle: i32) -> Option<[[f64; 3]; 3]> {
-        let corners = self.mesh.triangle(self.index(triangle)?);
-        Some(corners.map(|corner| self.mesh.frame().world_point(corner)))
+        let corners = self.scene.mesh.triangle(self.index(triangle)?);
+        Some(corners.map(|corner| self.scene.mesh.frame().world_point(corner)))
     }
 
     /// A triangle of the mesh, if it is one.

@@ -7,9 +7,14 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::arrays::{Rows, Values, zeros};
+use crate::columns::Columns;
+use crate::each::lists;
 use crate::error;
-use crate::rays::{Columns, blocks, lists};
+use crate::rays::blocks;
 use crate::run::Watch;
+
+/// Points that are in the core's form at a time.
+const BLOCK: usize = 1 << 16;
 
 /// What is asked for points, and where the mesh stands.
 pub(crate) struct Points<'a> {
@@ -79,7 +84,7 @@ impl Points<'_> {
     ) -> PyResult<()> {
         let local = |index| self.points.local(index, &self.frame);
         let batch = self.tracer.batch(watch.batch_options()).map_err(error::value)?;
-        for block in blocks(self.points.len()) {
+        for block in blocks(self.points.len(), BLOCK) {
             let points: Vec<[f32; 3]> = block.clone().into_par_iter().map(local).collect();
             ask(block, &batch, &points).map_err(error::value)?;
         }

@@ -1,10 +1,11 @@
 //! Pictures.
 
-use kdray_render::{Camera, RenderOptions, Shading, render};
+use kdray_render::{Camera, RenderOptions, Shading, render, render_with};
 use numpy::{IntoPyArray, PyArray3, ndarray};
 use pyo3::prelude::*;
 
 use crate::error;
+use crate::gpu::{OfPictures, OnGpu};
 use crate::run::run;
 use crate::tree::Tree;
 
@@ -43,9 +44,16 @@ impl Tree {
                 ..RenderOptions::default()
             };
             let camera = options.camera(self, render_options.aspect());
-            render(&self.tracer, &self.mesh, &camera, &render_options)
-        })?;
-        let picture = picture.map_err(error::value)?;
+            let mesh = &self.scene.mesh;
+            match self.gpu.as_ref().and_then(OnGpu::tracer) {
+                Some(tracer) if shading != Shading::Cost => {
+                    render_with(&OfPictures(tracer), mesh, &camera, &render_options)
+                        .map_err(error::value)
+                }
+                _ => render(self.scene.tracer(), mesh, &camera, &render_options)
+                    .map_err(error::value),
+            }
+        })??;
         let shape = (picture.height as usize, picture.width as usize, 3);
         let pixels = ndarray::Array3::from_shape_vec(shape, picture.pixels.into_flattened());
         Ok(pixels.expect("a colour a pixel").into_pyarray(py))
@@ -67,8 +75,8 @@ impl Options {
 
     /// The camera asked for; what is not given is that of a view of the whole mesh.
     fn camera(&self, tree: &Tree, aspect: f32) -> Camera {
-        let framing = Camera::framing_mesh(&tree.mesh, self.up, aspect);
-        let local = |point| tree.mesh.frame().local_point(point);
+        let framing = Camera::framing_mesh(&tree.scene.mesh, self.up, aspect);
+        let local = |point| tree.scene.mesh.frame().local_point(point);
         Camera {
             eye: self.eye.map_or(framing.eye, local),
             target: self.target.map_or(framing.target, local),

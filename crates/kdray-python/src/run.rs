@@ -1,16 +1,17 @@
 //! Work on all cores, while the interpreter goes on and Ctrl-C is heard.
 
 use std::collections::HashMap;
-use std::mem;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use kdray::BatchOptions;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::process::OfProcess;
 
 /// How often a call that takes long asks the interpreter for signals.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -41,8 +42,9 @@ impl Watch {
         BatchOptions { cancel: Some(&self.cancelled), ..BatchOptions::default() }
     }
 
+    /// Estimates may fall; what the caller hears does not. Bits compare like fractions.
     pub(crate) fn report(&self, fraction: f32) {
-        self.progress.store(fraction.to_bits(), Ordering::Relaxed);
+        self.progress.fetch_max(fraction.to_bits(), Ordering::Relaxed);
     }
 
     /// Lets the interpreter handle its signals, and the caller see the progress.
@@ -97,37 +99,24 @@ pub(crate) fn run<T: Send>(
     Ok(answer)
 }
 
-/// The pools of this process, by their number of threads.
-struct Pools {
-    process: u32,
-    by_threads: HashMap<usize, Arc<ThreadPool>>,
-}
+/// The pools by their number of threads.
+static POOLS: OfProcess<HashMap<usize, Arc<ThreadPool>>> = OfProcess::new();
 
-static POOLS: Mutex<Option<Pools>> = Mutex::new(None);
-
-/// The pool of `threads` threads. Threads do not live on in the child of a fork, so that makes
-/// pools of its own. Callers are attached, and so is whoever forks: the lock is free then.
+/// The pool of `threads` threads.
 fn pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
     if threads > MOST_THREADS {
         let message = format!("threads is {threads}, which is more than {MOST_THREADS}");
         return Err(PyValueError::new_err(message));
     }
-    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-    let process = std::process::id();
-    if pools.as_ref().is_some_and(|pools| pools.process != process) {
-        // Its threads cannot be waited for.
-        mem::forget(pools.take());
-    }
-    let pools = pools.get_or_insert_with(|| Pools { process, by_threads: HashMap::new() });
-    if let Some(pool) = pools.by_threads.get(&threads) {
-        return Ok(Arc::clone(pool));
-    }
-    let named = |index| format!("kdray-{index}");
-    let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(named);
-    let pool = builder.build().map_err(|error| {
-        PyRuntimeError::new_err(format!("threads: could not start {threads}: {error}"))
-    })?;
-    let pool = Arc::new(pool);
-    pools.by_threads.insert(threads, Arc::clone(&pool));
-    Ok(pool)
+    POOLS.with(|pools| {
+        if let Some(pool) = pools.get(&threads) {
+            return Ok(Arc::clone(pool));
+        }
+        let named = |index| format!("kdray-{index}");
+        let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(named);
+        let pool = builder.build().map_err(|error| {
+            PyOSError::new_err(format!("threads: could not start {threads}: {error}"))
+        })?;
+        Ok(Arc::clone(pools.entry(threads).or_insert(Arc::new(pool))))
+    })
 }

@@ -1,35 +1,31 @@
 //! The tree as Python holds it: the mesh, its tree, and what traces them.
 
-use std::sync::OnceLock;
+use std::sync::Arc;
 
-use kdray::{Mesh, Sign, Stats, Tracer, Winding};
+use kdray::{Mesh, Stats};
 use numpy::{IntoPyArray, PyArray1, PyArray2, ndarray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{Scalars, Vectors};
+use crate::arrays::{Rows, Scalars, Vectors};
+use crate::columns::{Columns, Hits};
+use crate::cpu;
+use crate::device::Choice;
+use crate::each::each;
 use crate::error;
+use crate::gpu::{self, OnGpu};
 use crate::near::{Points, within_boxes, within_spheres};
-use crate::rays::{Arguments, Columns, each};
-use crate::run::run;
+use crate::rays::{Arguments, Rays};
+use crate::run::{Watch, run};
+use crate::scene::Scene;
 
 /// A mesh, its kd-tree, and the queries they allow.
 #[pyclass(frozen, module = "kdray._kdray")]
 pub(crate) struct Tree {
-    pub(crate) mesh: Mesh,
-    pub(crate) tree: kdray::Tree,
-    pub(crate) tracer: Tracer,
-    /// Made when it is first asked for.
-    winding: OnceLock<Winding>,
+    pub(crate) scene: Arc<Scene>,
+    /// What answers rays, if that is not the CPU.
+    pub(crate) gpu: Option<OnGpu>,
 }
-
-/// `t`, `triangle`, `u` and `v`.
-type Hits<'py> = (
-    Bound<'py, PyArray1<f32>>,
-    Bound<'py, PyArray1<i32>>,
-    Bound<'py, PyArray1<f32>>,
-    Bound<'py, PyArray1<f32>>,
-);
 
 /// Where the lists begin, and the lists.
 type Lists<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i32>>);
@@ -38,7 +34,7 @@ type Lists<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i32>>);
 impl Tree {
     /// What is left of the tree in a pickle or a file.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyBytes>> {
-        let bytes = run(py, 0, None, |_| [self.mesh.to_bytes(), self.tree.to_bytes()])?;
+        let bytes = run(py, 0, None, |_| [self.scene.mesh.to_bytes(), self.scene.tree.to_bytes()])?;
         let length = bytes.iter().map(Vec::len).sum();
         pyo3::types::PyBytes::new_with(py, length, |target| {
             let (mesh, tree) = target.split_at_mut(bytes[0].len());
@@ -48,10 +44,33 @@ impl Tree {
         })
     }
 
+    /// The same tree on another device.
+    fn to(&self, py: Python<'_>, device: &str) -> PyResult<Self> {
+        let gpu = match Choice::of(py, device)? {
+            Choice::Cpu => None,
+            Choice::Gpu(device) | Choice::Rather(device) => {
+                let Scene { mesh, tree, .. } = &*self.scene;
+                let brought = run(py, 0, None, |_| OnGpu::new(device, mesh, tree))?;
+                Some(brought.map_err(|error| error::gpu(&error))?)
+            }
+        };
+        Ok(Self { scene: Arc::clone(&self.scene), gpu })
+    }
+
+    /// Index and name of the GPU that answers rays, unless that is the CPU.
+    #[getter]
+    fn gpu(&self) -> Option<(usize, String)> {
+        let adapter = self.gpu.as_ref().and_then(OnGpu::tracer)?.device().adapter();
+        Some((adapter.index, adapter.name.clone()))
+    }
+
     fn closest_hit<'py>(&self, py: Python<'py>, rays: Arguments<'_>) -> PyResult<Hits<'py>> {
         let threads = rays.6;
-        let rays = rays.over(&self.mesh)?;
-        let columns = run(py, threads, None, |watch| rays.closest(&self.tracer, watch))??;
+        let rays = rays.over(&self.scene.mesh)?;
+        let columns = run(py, threads, None, |watch| match self.on_gpu(&rays) {
+            Some(tracer) => gpu::closest(&rays, tracer, watch),
+            None => self.on_cpu(&rays, watch).closest(),
+        })??;
         Ok(columns.into_python(py))
     }
 
@@ -61,8 +80,11 @@ impl Tree {
         rays: Arguments<'_>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let threads = rays.6;
-        let rays = rays.over(&self.mesh)?;
-        let hit = run(py, threads, None, |watch| rays.any(&self.tracer, watch))??;
+        let rays = rays.over(&self.scene.mesh)?;
+        let hit = run(py, threads, None, |watch| match self.on_gpu(&rays) {
+            Some(tracer) => gpu::any(&rays, tracer, watch),
+            None => self.on_cpu(&rays, watch).any(),
+        })??;
         Ok(hit.into_pyarray(py))
     }
 
@@ -72,8 +94,11 @@ impl Tree {
         rays: Arguments<'_>,
     ) -> PyResult<Bound<'py, PyArray1<i32>>> {
         let threads = rays.6;
-        let rays = rays.over(&self.mesh)?;
-        let counts = run(py, threads, None, |watch| rays.count(&self.tracer, watch))??;
+        let rays = rays.over(&self.scene.mesh)?;
+        let counts = run(py, threads, None, |watch| match self.on_gpu(&rays) {
+            Some(tracer) => gpu::count(&rays, tracer, watch),
+            None => self.on_cpu(&rays, watch).count(),
+        })??;
         Ok(counts.into_pyarray(py))
     }
 
@@ -84,9 +109,11 @@ impl Tree {
         max_hits: usize,
     ) -> PyResult<(Bound<'py, PyArray1<i64>>, Hits<'py>)> {
         let threads = rays.6;
-        let rays = rays.over(&self.mesh)?;
-        let (offsets, columns) =
-            run(py, threads, None, |watch| rays.all(&self.tracer, max_hits, watch))??;
+        let rays = rays.over(&self.scene.mesh)?;
+        let (offsets, columns) = run(py, threads, None, |watch| match self.on_gpu(&rays) {
+            Some(tracer) => gpu::all(&rays, max_hits, tracer, watch),
+            None => self.on_cpu(&rays, watch).all(max_hits),
+        })??;
         Ok((offsets.into_pyarray(py), columns.into_python(py)))
     }
 
@@ -97,8 +124,10 @@ impl Tree {
         winding: bool,
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let points = self.asked(&points)?;
-        let inside = run(py, threads, None, |watch| points.inside(self.sign(winding), watch))??;
+        let points = points.rows()?;
+        let inside = run(py, threads, None, |watch| {
+            self.near(points).inside(self.scene.sign(winding), watch)
+        })??;
         Ok(inside.into_pyarray(py))
     }
 
@@ -110,9 +139,10 @@ impl Tree {
         winding: bool,
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let points = self.asked(&points)?;
-        let distances =
-            run(py, threads, None, |watch| points.signed_distances(self.sign(winding), watch))??;
+        let points = points.rows()?;
+        let distances = run(py, threads, None, |watch| {
+            self.near(points).signed_distances(self.scene.sign(winding), watch)
+        })??;
         Ok(distances.into_pyarray(py))
     }
 
@@ -124,9 +154,9 @@ impl Tree {
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let points = points.rows()?;
-        let frame = self.mesh.frame();
+        let frame = self.scene.mesh.frame();
         let numbers = run(py, threads, None, |watch| {
-            let winding = self.winding();
+            let winding = self.scene.winding();
             each(points.len(), watch, |index| {
                 winding.number(points.local(index, &frame), tolerance)
             })
@@ -149,9 +179,9 @@ impl Tree {
         Bound<'py, PyArray1<f32>>,
         Bound<'py, PyArray1<f32>>,
     )> {
-        let points = self.asked(&points)?;
+        let points = points.rows()?;
         let (places, distances, Columns { triangle, u, v, .. }) =
-            run(py, threads, None, |watch| points.closest(max_distance, watch))??;
+            run(py, threads, None, |watch| self.near(points).closest(max_distance, watch))??;
         Ok((
             table(py, places),
             distances.into_pyarray(py),
@@ -172,9 +202,10 @@ impl Tree {
         if !radii.fits(centers.len()) {
             return Err(error::value("arrays of different lengths"));
         }
-        let near = (&self.tracer, &self.mesh.frame());
-        let (offsets, triangles) =
-            run(py, threads, None, |watch| within_spheres(near, &centers, &radii, watch))??;
+        let (offsets, triangles) = run(py, threads, None, |watch| {
+            let near = (self.scene.tracer(), &self.scene.mesh.frame());
+            within_spheres(near, &centers, &radii, watch)
+        })??;
         Ok((offsets.into_pyarray(py), triangles.into_pyarray(py)))
     }
 
@@ -189,15 +220,17 @@ impl Tree {
         if lower.len() != upper.len() {
             return Err(error::value("arrays of different lengths"));
         }
-        let near = (&self.tracer, &self.mesh.frame());
-        let (offsets, triangles) =
-            run(py, threads, None, |watch| within_boxes(near, (&lower, &upper), watch))??;
+        let (offsets, triangles) = run(py, threads, None, |watch| {
+            let near = (self.scene.tracer(), &self.scene.mesh.frame());
+            within_boxes(near, (&lower, &upper), watch)
+        })??;
         Ok((offsets.into_pyarray(py), triangles.into_pyarray(py)))
     }
 
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let stats = run(py, 0, None, |_| self.tree.stats())?;
-        let sah_cost = stats.sah_cost(&self.tree.cost());
+        let tree = &self.scene.tree;
+        let stats = run(py, 0, None, |_| tree.stats())?;
+        let sah_cost = stats.sah_cost(&tree.cost());
         let Stats { nodes, leaves, empty_leaves, references, depth, .. } = stats;
         let Stats { leaf_histogram, e_inner, e_leaf, e_prim, bytes, .. } = stats;
         let dict = PyDict::new(py);
@@ -212,43 +245,35 @@ impl Tree {
         dict.set_item("e_prim", e_prim)?;
         dict.set_item("sah_cost", sah_cost)?;
         dict.set_item("tree_bytes", bytes)?;
-        dict.set_item("tracer_bytes", self.tracer.size_bytes())?;
+        dict.set_item("tracer_bytes", run(py, 0, None, |_| self.scene.tracer().size_bytes())?)?;
         Ok(dict)
     }
 
     /// Raises a ValueError that tells the first violation.
     fn validate(&self, py: Python<'_>) -> PyResult<()> {
-        run(py, 0, None, |_| self.tree.validate(&self.mesh))?.map_err(error::value)
+        run(py, 0, None, |_| self.scene.tree.validate(&self.scene.mesh))?.map_err(error::value)
     }
 }
 
 impl Tree {
+    /// A tree on the CPU.
     pub(crate) fn new(mesh: Mesh, tree: kdray::Tree) -> Self {
-        let tracer = Tracer::new(&mesh, &tree);
-        Self { mesh, tree, tracer, winding: OnceLock::new() }
+        let scene = Scene::new(mesh, tree);
+        scene.tracer();
+        Self { scene: Arc::new(scene), gpu: None }
     }
 
-    fn asked<'a>(&'a self, points: &'a Vectors<'_>) -> PyResult<Points<'a>> {
-        Ok(Points { tracer: &self.tracer, frame: self.mesh.frame(), points: points.rows()? })
+    /// What answers rays, if that is a GPU. It knows nothing of masks.
+    fn on_gpu(&self, rays: &Rays) -> Option<&kdray_gpu::Tracer<'static>> {
+        self.gpu.as_ref().filter(|_| rays.mask.is_none()).and_then(OnGpu::tracer)
     }
 
-    fn winding(&self) -> &Winding {
-        self.winding.get_or_init(|| Winding::new(&self.mesh))
+    fn on_cpu<'a, 'r>(&'a self, rays: &'a Rays<'r>, watch: &'a Watch) -> cpu::Asked<'a, 'r> {
+        cpu::Asked { rays, scene: &self.scene, watch }
     }
 
-    fn sign(&self, winding: bool) -> Sign<'_> {
-        if winding { Sign::Winding(self.winding()) } else { Sign::Parity }
-    }
-}
-
-impl Columns {
-    fn into_python(self, py: Python<'_>) -> Hits<'_> {
-        (
-            self.t.into_pyarray(py),
-            self.triangle.into_pyarray(py),
-            self.u.into_pyarray(py),
-            self.v.into_pyarray(py),
-        )
+    fn near<'a>(&'a self, points: Rows<'a>) -> Points<'a> {
+        Points { tracer: self.scene.tracer(), frame: self.scene.mesh.frame(), points }
     }
 }
 

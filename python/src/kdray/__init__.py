@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _kdray, generate
+from ._device import Device, devices
 from ._results import AllHits, ClosestPoints, Hits, Stats, Within
 from ._tree import Tree, build
 
@@ -27,6 +28,7 @@ __version__: str = _kdray.__version__
 __all__ = [
     "AllHits",
     "ClosestPoints",
+    "Device",
     "Hits",
     "Stats",
     "Tree",
@@ -64,13 +66,3 @@ def load(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.
     for note in notes:
         warnings.warn(f"{path}: {note}", stacklevel=2)
     return vertices, faces
-
-
-def devices() -> list[str]:
-    """The devices that trees can be built and asked on.
-
-    >>> import kdray
-    >>> kdray.devices()
-    ['cpu']
-    """
-    return ["cpu"]

@@ -24,6 +24,7 @@ from ._arrays import (
     vertex_rows,
     whole,
 )
+from ._device import Device, device_word
 from ._results import AllHits, ClosestPoints, Hits, Stats, Within
 
 Progress = Callable[[float], object]
@@ -33,7 +34,7 @@ def build(
     vertices: ArrayLike,
     faces: ArrayLike,
     *,
-    device: str = "auto",
+    device: Device | str | int = "auto",
     builder: str = "exact",
     cost_traversal: float | None = None,
     cost_intersect: float | None = None,
@@ -58,9 +59,13 @@ def build(
     faces
         `(m, 3)`, integers: three vertices a triangle.
     device
-        `"auto"` or `"cpu"`.
+        Where the tree is built, and its rays are answered; the tree and the answers have the same
+        bits everywhere. `"auto"`: a GPU if there is one that is not a program, and otherwise, or
+        if that fails, the CPU; `Tree.device` says which. `"cpu"`; `"gpu"`, the best there is; or
+        one of `kdray.devices()`, its index, or a part of its name. [WZL11]
     builder
-        `"exact"`: O(N log N). `"resort"` and `"naive"` give the same tree, more slowly.
+        `"exact"`: O(N log N). `"resort"` and `"naive"` give the same tree, more slowly and on the
+        CPU only.
     cost_traversal, cost_intersect, empty_bonus
         What a ray is thought to pay for a step and for a triangle, between 1e-6 and 1e6, and how
         much cutting off empty space is favoured, in 0..1. By default what was measured to be fast.
@@ -72,9 +77,10 @@ def build(
     clip
         Whether triangles are clipped to their nodes. Without, the build is faster and rays slower.
     threads
-        Threads that build; by default one a core.
+        Threads that build, on the CPU; by default one a core.
     memory_budget
-        Bytes the build may have allocated at any time, the tree included and the mesh not.
+        Bytes the build may have allocated on its device at any time, the tree included and, on
+        the CPU, the mesh not.
     progress
         Called now and then, on the calling thread, with the fraction that is done; what it raises
         ends the build.
@@ -82,11 +88,14 @@ def build(
     Raises
     ------
     ValueError
-        A wrong shape, a vertex that is not finite, an index or an option out of range.
+        A wrong shape, a vertex that is not finite, an index or an option out of range, or no such
+        device.
     TypeError
         Arrays that are not of numbers.
     MemoryError
-        The memory budget cannot hold the build.
+        The memory budget, or the device, cannot hold the build.
+    OSError
+        The device failed.
 
     Examples
     --------
@@ -94,10 +103,10 @@ def build(
     >>> kdray.build([[0., 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     kdray.Tree(1 triangle, 3 vertices, 1 node, bounds [0 0 0] to [1 1 0])
     """
-    check_device(device)
     points = vertex_rows(vertices)
     traversal, intersect, bonus = _kdray.default_cost()
     options = {
+        "device": device_word(device),
         "builder": builder,
         "cost_traversal": traversal if cost_traversal is None else cost_traversal,
         "cost_intersect": intersect if cost_intersect is None else cost_intersect,
@@ -114,17 +123,12 @@ def build(
     return Tree(_kdray.Tree.build(points, face_rows(faces, len(points)), options))
 
 
-def check_device(device: str) -> None:
-    """Refuses a device that there is not."""
-    if device not in ("auto", "cpu"):
-        raise ValueError(f"device is {device!r}; there is 'cpu' (and 'auto', which picks it)")
-
-
 class Tree:
     """A mesh, its kd-tree, and the queries they allow; made by `kdray.build` and `Tree.open`.
 
     A tree does not change, so threads can share it. Queries run on all cores (or on `threads`),
-    without the interpreter's lock, and end with KeyboardInterrupt on Ctrl-C.
+    without the interpreter's lock, and end with KeyboardInterrupt on Ctrl-C. On a tree that is on
+    a GPU, rays are answered there, unless there is a `mask`; all else on the CPU.
 
     Queries take arrays of any leading shape, `(…, 3)`, and answer in that shape; float32 and
     float64 arrays are not copied. Coordinates are those of the mesh's vertices. A ray
@@ -478,8 +482,9 @@ class Tree:
 
     @property
     def device(self) -> str:
-        """Where queries are answered."""
-        return "cpu"
+        """Where rays are answered: `"cpu"`, or the name of a GPU."""
+        gpu = self._tree.gpu
+        return "cpu" if gpu is None else gpu[1]
 
     @property
     def stats(self) -> Stats:
@@ -501,16 +506,27 @@ class Tree:
         """
         self._tree.validate()
 
-    def to(self, device: str) -> Tree:
-        """The tree on a device: itself, on `"cpu"`.
+    def to(self, device: Device | str | int) -> Tree:
+        """The same tree on a device, named as for `kdray.build`; itself, if it is there.
 
         Raises
         ------
         ValueError
             There is no such device.
+        MemoryError
+            The device cannot hold the tree.
+        OSError
+            The device failed.
+
+        Examples
+        --------
+        >>> import kdray
+        >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> tree.to("cpu").device
+        'cpu'
         """
-        check_device(device)
-        return self
+        moved = self._tree.to(device_word(device))
+        return self if moved.gpu == self._tree.gpu else Tree(moved)
 
     # Keeping it.
 
@@ -571,6 +587,7 @@ class Tree:
         points = vertex_rows(vertices)
         return Tree(_kdray.Tree.open(path, (points, face_rows(faces, len(points)))))
 
+    # A pickle knows of no devices: what comes of it is on the CPU.
     def __reduce__(self) -> tuple[Any, ...]:
         return _from_bytes, (self._tree.to_bytes(),)
 
@@ -582,14 +599,12 @@ class Tree:
 
     def __repr__(self) -> str:
         stats = self.stats
-        corners = (np.array2string(corner, precision=4) for corner in self.bounds)
-        lower, upper = (
-            " ".join(corner.replace(".]", "]").replace(". ", " ").split()) for corner in corners
-        )
+        lower, upper = (" ".join(f"{x:.5g}" for x in corner) for corner in self.bounds)
+        place = "" if self.device == "cpu" else f", on {self.device}"
         return (
             f"kdray.Tree({_count(self.triangle_count, 'triangle')}, "
             f"{_count(self.vertex_count, 'vertex', 'vertices')}, "
-            f"{_count(stats.nodes, 'node')}, bounds {lower} to {upper})"
+            f"{_count(stats.nodes, 'node')}, bounds [{lower}] to [{upper}]{place})"
         )
 
     # For the results.
