@@ -123,7 +123,7 @@ impl Workspace {
             let corners = context.mesh.triangle(triangle as usize);
             *parts = children.map(|child| context.limits.part(&corners, &child));
             let [left, right] = parts.map(|part| u8::from(part.is_some()));
-            self.sides[*reference as usize] = IN_PARTS | left * LEFT | right * RIGHT;
+            self.sides[*reference as usize] = IN_PARTS | (left * LEFT) | (right * RIGHT);
         }
     }
 
