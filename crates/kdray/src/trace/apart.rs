@@ -1,146 +1,215 @@
-//! How far the triangles of a block are from a point, at least.
+//! How far the triangles of a block are from a point, at least and at most.
 //!
 //! A plane with all of a triangle beyond it proves a distance, whatever its normal. So the normal
 //! may come from single precision: it points to where the nearest point seems to be, and only the
-//! projection of the corners on it, with its roundings, has to be right.
+//! projection of the corners on it, with its roundings, has to be right. Wherever that is in the
+//! triangle, its nearest point is not farther.
 
-use super::block::{Block, LANES};
-use super::prepare::{greater, lesser};
+use super::block::Block;
+use super::eights::{Eights, by_axis};
 
-type Lanes = [f32; LANES];
-type Vectors = [Lanes; 3];
+/// Bounds of the squared distances of the triangles of a block.
+pub(super) struct Apart<E> {
+    pub(super) least: E,
+    pub(super) most: E,
+}
 
-/// Lower bounds of the squared distances of the triangles from `point`; infinite for free lanes.
+/// Bounds for the triangles of `block` from `point`, which is the same in all lanes.
 #[inline(always)]
-pub(super) fn squared_bounds(block: &Block, point: [f32; 3]) -> Lanes {
-    let [a, b, c] = block.corners();
-    let start = vectors(|axis, lane| a[axis][lane] - point[axis]);
-    let ab = vectors(|axis, lane| b[axis][lane] - a[axis][lane]);
-    let ac = vectors(|axis, lane| c[axis][lane] - a[axis][lane]);
-    let mut bounds = Corners::new(start, ab, ac).squared_bounds();
-    for lane in 1..LANES {
-        if block.is_free(lane) {
-            bounds[lane] = f32::INFINITY;
-        }
-    }
-    bounds
+pub(super) fn apart<E: Eights>(block: &Block, point: &[E; 3]) -> Apart<E> {
+    let corners = block.corners();
+    let a = by_axis!(|axis| point[0].load(&corners[0][axis]));
+    let start = by_axis!(|axis| a[axis] - point[axis]);
+    let ab = by_axis!(|axis| point[0].load(&corners[1][axis]) - a[axis]);
+    let ac = by_axis!(|axis| point[0].load(&corners[2][axis]) - a[axis]);
+    Triangles::new(start, ab, ac).apart()
 }
 
 /// The corners as seen from the point: `start`, `start + ab` and `start + ac`; and products.
-struct Corners {
-    start: Vectors,
-    ab: Vectors,
-    ac: Vectors,
-    start_start: Lanes,
-    start_ab: Lanes,
-    start_ac: Lanes,
-    ab_ab: Lanes,
-    ab_ac: Lanes,
-    ac_ac: Lanes,
+struct Triangles<E> {
+    start: [E; 3],
+    ab: [E; 3],
+    ac: [E; 3],
+    start_start: E,
+    start_ab: E,
+    start_ac: E,
+    ab_ab: E,
+    ab_ac: E,
+    ac_ac: E,
 }
+
+/// Half an ulp of one.
+const HALF_ULP: f32 = 0.5 * f32::EPSILON;
 
 /// More than the roundings of projections, relative to the product of the lengths: seven half ulps
 /// of one are in play.
-const ROUNDING: f32 = 10.0 * 0.5 * f32::EPSILON;
+const ROUNDING: f32 = 10.0 * HALF_ULP;
 
 /// Below these, products could have lost digits: nothing is known then.
 const SMALLEST_PROJECTION: f32 = 1e-18;
 const SMALLEST_NORMAL: f32 = 1e-30;
 
-impl Corners {
+/// The way to a point of the triangle is off by less than `20 HALF_ULP` of the largest distance in
+/// play, here `reach`: four roundings for each of its three terms, and four for the weights. With a
+/// share of the length itself, `(length + off)^2 <= length^2 (1 + SHARE) + off^2 (1 + 1 / SHARE)`.
+/// Twice the share leaves room for the roundings of squares.
+const SHARE: f32 = 1.0 / 8192.0;
+const OFF: f32 = 20.0 * HALF_ULP * 20.0 * HALF_ULP * 1.5 * (1.0 + 1.0 / SHARE);
+
+impl<E: Eights> Triangles<E> {
     #[inline(always)]
-    fn new(start: Vectors, ab: Vectors, ac: Vectors) -> Self {
+    fn new(start: [E; 3], ab: [E; 3], ac: [E; 3]) -> Self {
         let [start_start, start_ab, start_ac] =
             [dot(&start, &start), dot(&start, &ab), dot(&start, &ac)];
         let [ab_ab, ab_ac, ac_ac] = [dot(&ab, &ab), dot(&ab, &ac), dot(&ac, &ac)];
         Self { start, ab, ac, start_start, start_ab, start_ac, ab_ab, ab_ac, ac_ac }
     }
 
-    /// The squared distance of the plane through the nearest corner, across the way to where the
-    /// nearest point seems to be; zero if other corners are before it.
+    /// At least the squared distance of the plane through the nearest corner, across the way to
+    /// where the nearest point seems to be; zero if other corners are before it. At most that of
+    /// where it seems to be.
     #[inline(always)]
-    fn squared_bounds(&self) -> Lanes {
+    fn apart(&self) -> Apart<E> {
         let [u, v] = self.nearest();
-        let normal = vectors(|axis, lane| {
-            self.start[axis][lane] + (u[lane] * self.ab[axis][lane] + v[lane] * self.ac[axis][lane])
-        });
+        let normal =
+            by_axis!(|axis| u.fused(self.ab[axis], v.fused(self.ac[axis], self.start[axis])));
         let [start, ab, ac] =
             [dot(&normal, &self.start), dot(&normal, &self.ab), dot(&normal, &self.ac)];
         let length = dot(&normal, &normal);
-        lanes(|lane| {
-            let reach = self.start_start[lane] + greater(self.ab_ab[lane], self.ac_ac[lane]);
-            let nearest = start[lane] + lesser(lesser(ab[lane], ac[lane]), 0.0);
-            let sure = nearest - ROUNDING * (length[lane] * reach).sqrt();
-            let bound = sure * (sure / length[lane]) * (1.0 - ROUNDING);
-            // Of numbers out of range nothing is known either.
-            let is_known = (sure > SMALLEST_PROJECTION)
-                & (length[lane] > SMALLEST_NORMAL)
-                & (bound < f32::INFINITY);
-            if is_known { bound } else { 0.0 }
-        })
+        let all = |number: f32| u.all(number);
+        let reach = self.start_start + self.ab_ab.max(self.ac_ac);
+        let off = reach.fused(all(OFF), all(f32::MIN_POSITIVE));
+        let most = length.fused(all(1.0 + 2.0 * SHARE), off);
+        let nearest = start + ab.min(ac).min(all(0.0));
+        let sure = nearest - all(ROUNDING) * (length * reach).sqrt();
+        let least = sure * sure.over(length) * all(1.0 - ROUNDING);
+        // Of numbers out of range nothing is known.
+        let least = least.pick(all(f32::INFINITY), least, all(0.0));
+        let least = all(SMALLEST_NORMAL).pick(length, least, all(0.0));
+        Apart { least: all(SMALLEST_PROJECTION).pick(sure, least, all(0.0)), most }
     }
 
     /// Weights of `ab` and `ac` at the nearest points, roughly: those of the foot on the plane
     /// where that is inside, else of the nearest point of an edge.
     #[inline(always)]
-    fn nearest(&self) -> [Lanes; 2] {
-        let (mut u, mut v) = ([0.0; LANES], [0.0; LANES]);
-        for lane in 0..LANES {
-            let [ab_ab, ab_ac, ac_ac] = [self.ab_ab[lane], self.ab_ac[lane], self.ac_ac[lane]];
-            let [along_ab, along_ac] = [-self.start_ab[lane], -self.start_ac[lane]];
-            let on_ab = share(along_ab, ab_ab);
-            let on_ac = share(along_ac, ac_ac);
-            let on_bc = share(along_ac - along_ab + (ab_ab - ab_ac), ab_ab + ac_ac - 2.0 * ab_ac);
-            // Squared distances, less that of the first corner.
-            let square = |u: f32, v: f32| {
-                u * (u * ab_ab - 2.0 * along_ab)
-                    + v * (v * ac_ac - 2.0 * along_ac)
-                    + 2.0 * (u * v * ab_ac)
+    fn nearest(&self) -> [E; 2] {
+        let Self { ab_ab, ab_ac, ac_ac, .. } = *self;
+        let (zero, one) = (ab_ab.all(0.0), ab_ab.all(1.0));
+        let share = |part: E, whole: E| part.roughly_over(whole).max(zero).min(one);
+        let [along_ab, along_ac] = [zero - self.start_ab, zero - self.start_ac];
+        let on_ab = share(along_ab, ab_ab);
+        let on_ac = share(along_ac, ac_ac);
+        let across = ab_ab - ab_ac;
+        let on_bc = share(along_ac - along_ab + across, across + (ac_ac - ab_ac));
+        // Squared distances, less that of the first corner.
+        let at_ab = on_ab * on_ab.fused(ab_ab, self.start_ab + self.start_ab);
+        let at_ac = on_ac * on_ac.fused(ac_ac, self.start_ac + self.start_ac);
+        let off_bc = one - on_bc;
+        let half = off_bc.fused(ab_ab, self.start_ab + self.start_ab);
+        let other = on_bc.fused(ac_ac, self.start_ac + self.start_ac);
+        let twice = off_bc * ab_ac;
+        let at_bc = off_bc.fused(half, on_bc * (other + twice + twice));
+        let nearer = at_ab.min(at_ac);
+        let u = at_bc.pick(nearer, off_bc, at_ab.pick(at_ac, on_ab, zero));
+        let v = at_bc.pick(nearer, on_bc, at_ab.pick(at_ac, zero, on_ac));
+        let area = ab_ab * ac_ac - ab_ac * ab_ac;
+        let foot_u = along_ab * ac_ac - along_ac * ab_ac;
+        let foot_v = along_ac * ab_ab - along_ab * ab_ac;
+        // Inside if all three are positive.
+        let least = foot_u.min(foot_v).min(area - foot_u - foot_v);
+        let one_over = one.over(area);
+        [zero.pick(least, foot_u * one_over, u), zero.pick(least, foot_v * one_over, v)]
+    }
+}
+
+#[inline(always)]
+fn dot<E: Eights>(a: &[E; 3], b: &[E; 3]) -> E {
+    a[0].fused(b[0], a[1].fused(b[1], a[2] * b[2]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::eights::Array;
+    use super::*;
+    use crate::geometry::nearest::nearest_on_triangle;
+    use crate::trace::noise::noise;
+    #[cfg(target_arch = "x86_64")]
+    use crate::trace::vector::Eight;
+
+    type Corners = [[f32; 3]; 3];
+
+    /// Triangles of all shapes, slivers, segments and points among them, and places near and far,
+    /// some of them on the triangle.
+    fn cases(count: usize) -> Vec<([f32; 3], Vec<Corners>)> {
+        let mut state = 5;
+        let mut case = || {
+            let mut any = || 2.0 * noise(&mut state) - 1.0;
+            let base = [any(), any(), any()].map(|v| v * 10.0);
+            let size = 10.0_f32.powf(2.0 * any());
+            let corner = |any: &mut dyn FnMut() -> f32| base.map(|v| v + size * any());
+            let triangles: Vec<Corners> = (0..8)
+                .map(|kind| {
+                    let [a, b, c] = [(); 3].map(|()| corner(&mut any));
+                    let along = |t: f32| [0, 1, 2].map(|axis| a[axis] + t * (b[axis] - a[axis]));
+                    match kind {
+                        0 => [a; 3],
+                        1 => [a, b, along(any())],
+                        2 => [a, b, along(any()).map(|v| v + 1e-5 * size * any())],
+                        _ => [a, b, c],
+                    }
+                })
+                .collect();
+            let [a, b, c] = triangles[7];
+            let reach = size * 10.0_f32.powf(2.0 * any());
+            let point = match (4.0 * noise(&mut state)) as u32 {
+                0 => [0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0),
+                1 => b,
+                _ => base.map(|v| v + reach * (2.0 * noise(&mut state) - 1.0)),
             };
-            let (at_ab, at_ac) = (square(on_ab, 0.0), square(0.0, on_ac));
-            let at_bc = square(1.0 - on_bc, on_bc);
-            let (nearer_u, nearer_v, nearer) =
-                if at_ab < at_ac { (on_ab, 0.0, at_ab) } else { (0.0, on_ac, at_ac) };
-            let (edge_u, edge_v) =
-                if at_bc < nearer { (1.0 - on_bc, on_bc) } else { (nearer_u, nearer_v) };
-            let area = ab_ab * ac_ac - ab_ac * ab_ac;
-            let foot_u = along_ab * ac_ac - along_ac * ab_ac;
-            let foot_v = along_ac * ab_ab - along_ab * ab_ac;
-            let inside = (foot_u > 0.0) & (foot_v > 0.0) & (foot_u + foot_v < area);
-            u[lane] = if inside { foot_u / area } else { edge_u };
-            v[lane] = if inside { foot_v / area } else { edge_v };
+            (point, triangles)
+        };
+        (0..count).map(|_| case()).collect()
+    }
+
+    /// How many bounds are close.
+    fn check<E: Eights>(zero: E) -> usize {
+        let mut close = 0;
+        for (point, triangles) in cases(20_000) {
+            let block =
+                Block::new(&[0, 1, 2, 3, 4, 5, 6, 7], true, |index| triangles[index as usize]);
+            let Apart { least, most } = apart(&block, &point.map(|number| zero.all(number)));
+            for (lane, corners) in triangles.iter().enumerate() {
+                let nearest = nearest_on_triangle(point, corners).squared_distance;
+                let [least, most] = [least, most].map(|it| f64::from(it.numbers()[lane]));
+                let is_right = least <= nearest && nearest <= most;
+                assert!(is_right, "{least} {nearest} {most}: {point:?} {corners:?}");
+                close += usize::from(most - least < 1e-3 * nearest);
+            }
         }
-        [u, v]
+        close
     }
-}
 
-/// `part / whole`, but in 0..=1.
-#[inline(always)]
-fn share(part: f32, whole: f32) -> f32 {
-    lesser(greater(part / whole, 0.0), 1.0)
-}
-
-#[inline(always)]
-fn lanes(value: impl Fn(usize) -> f32) -> Lanes {
-    let mut lanes = [0.0; LANES];
-    for lane in 0..LANES {
-        lanes[lane] = value(lane);
+    #[test]
+    fn distances_are_between_their_bounds() {
+        let close = check(Array([0.0; 8]));
+        assert!(close > 100_000, "only {close} bounds are close");
     }
-    lanes
-}
 
-#[inline(always)]
-fn vectors(value: impl Fn(usize, usize) -> f32) -> Vectors {
-    let mut vectors = [[0.0; LANES]; 3];
-    for axis in 0..3 {
-        for lane in 0..LANES {
-            vectors[axis][lane] = value(axis, lane);
+    #[cfg(target_arch = "x86_64")]
+    #[test]
+    fn distances_are_between_their_bounds_with_avx2() {
+        #[target_feature(enable = "avx2,fma")]
+        fn check_avx2() -> usize {
+            check(Eight(std::arch::x86_64::_mm256_setzero_ps()))
         }
+        let has_all = std::arch::is_x86_feature_detected!("avx2")
+            && std::arch::is_x86_feature_detected!("fma");
+        if !has_all {
+            println!("this processor has no AVX2: its path was not tested");
+            return;
+        }
+        // SAFETY: the processor has both.
+        let close = unsafe { check_avx2() };
+        assert!(close > 100_000, "only {close} bounds are close");
     }
-    vectors
-}
-
-#[inline(always)]
-fn dot(a: &Vectors, b: &Vectors) -> Lanes {
-    lanes(|lane| a[0][lane] * b[0][lane] + a[1][lane] * b[1][lane] + a[2][lane] * b[2][lane])
 }

@@ -137,6 +137,25 @@ impl Block {
         block
     }
 
+    /// A block of one triangle, of no leaf.
+    pub(super) fn of(triangle: u32, corners: &[[f32; 3]; 3]) -> Self {
+        Self::new(&[triangle], true, |_| *corners)
+    }
+
+    /// Puts another triangle in a lane of a block of no leaf, unless it is there already.
+    pub(super) fn replace(&mut self, lane: usize, triangle: u32, corners: &[[f32; 3]; 3]) -> bool {
+        if (0..LANES).any(|lane| self.index(lane) == triangle) {
+            return false;
+        }
+        for corner in 0..3 {
+            for axis in 0..3 {
+                self.corners[corner][axis][lane] = corners[corner][axis];
+            }
+        }
+        self.triangles[lane] = triangle;
+        true
+    }
+
     /// Whether the leaf has no more blocks after this.
     #[inline(always)]
     pub(super) fn is_last(&self) -> bool {

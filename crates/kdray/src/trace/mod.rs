@@ -37,18 +37,23 @@
 //! numbers, and `sift` says by it which triangles may be hit. `intersect` says for one triangle what a
 //! hit is: it is the definition that everything else is tested against. `hits` keeps what the queries
 //! want of the hits. `leaves` is the same visit for whoever asks, in strict order.
-//! `near` visits the leaves around a point, for the queries of `proximity`; `apart` says how far
-//! the triangles of a block are at least. `sign` tells inside from outside, and `batch` asks many
-//! things at once.
+//! `near` visits the leaves around a point, for the queries of `proximity`: `tilt` has second boxes
+//! along the surface, `apart` says how far the triangles of a block are at least and at most, with the
+//! arithmetic of `eights`, and `closest` keeps those that may be the closest. `sign` tells inside from
+//! outside, and `batch` asks many things at once.
 
 mod apart;
 mod batch;
 mod block;
+mod closest;
 mod collapse;
+mod eights;
 mod hits;
 mod intersect;
 mod leaves;
 mod near;
+#[cfg(test)]
+mod noise;
 mod only;
 #[cfg(target_arch = "x86_64")]
 mod packet;
@@ -62,6 +67,7 @@ mod simd;
 mod stack;
 mod step;
 mod stream;
+mod tilt;
 mod tracer;
 mod traverse;
 #[cfg(target_arch = "x86_64")]

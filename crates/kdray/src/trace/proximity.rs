@@ -1,11 +1,14 @@
 //! What is near a point: the closest point of the surface, and the triangles within a distance.
 
 use super::Tracer;
-use super::apart::squared_bounds;
+use super::apart::apart;
 use super::block::{Block, LANES};
-use super::near::{NearVisitor, visit_box, visit_near};
+use super::closest::{Search, Seeds};
+use super::eights::Eights;
+use super::near::{NearVisitor, blocks_of, visit_box, visit_near};
+use super::wide::Child;
 use crate::geometry::Aabb;
-use crate::geometry::nearest::{Nearest, nearest_on_triangle};
+use crate::geometry::nearest::nearest_on_triangle;
 use crate::geometry::overlap::overlaps;
 
 /// The point of the surface closest to a query point.
@@ -41,6 +44,16 @@ impl Tracer {
     /// ```
     #[must_use]
     pub fn closest_point(&self, point: [f32; 3], max_distance: f32) -> Option<ClosestPoint> {
+        self.closest_near(point, max_distance, &mut Seeds::default())
+    }
+
+    /// [`Tracer::closest_point`], with what the last ones have found.
+    pub(super) fn closest_near(
+        &self,
+        point: [f32; 3],
+        max_distance: f32,
+        seeds: &mut Seeds,
+    ) -> Option<ClosestPoint> {
         if !point.iter().all(|value| value.is_finite())
             || max_distance.is_nan()
             || max_distance < 0.0
@@ -48,16 +61,16 @@ impl Tracer {
             return None;
         }
         let limit = f64::from(max_distance) * f64::from(max_distance);
-        let mut search = Search { point, limit, best: None };
-        let until = rounded_up(limit);
-        visit_near(&self.trip.layout, point, until, &mut search);
-        let (triangle, nearest) = search.best?;
+        let mut search = Search::new(point, limit, seeds);
+        visit_near(&self.trip, self.tilts(), point, &mut search);
+        let found = search.end()?;
+        seeds.add(found.triangle, &found.corners);
         Some(ClosestPoint {
-            point: nearest.point.map(|value| value as f32),
-            distance: nearest.squared_distance.sqrt() as f32,
-            triangle,
-            u: nearest.u as f32,
-            v: nearest.v as f32,
+            point: found.nearest.point.map(|value| value as f32),
+            distance: found.nearest.squared_distance.sqrt() as f32,
+            triangle: found.triangle,
+            u: found.nearest.u as f32,
+            v: found.nearest.v as f32,
         })
     }
 
@@ -70,7 +83,7 @@ impl Tracer {
         }
         let limit = f64::from(radius) * f64::from(radius);
         let mut within = Within { center, limit, triangles };
-        visit_near(&self.trip.layout, center, rounded_up(limit), &mut within);
+        visit_near(&self.trip, self.tilts(), center, &mut within);
         triangles.sort_unstable();
         triangles.dedup();
     }
@@ -100,47 +113,9 @@ impl Tracer {
 }
 
 /// A single-precision number that is not below `value`.
-fn rounded_up(value: f64) -> f32 {
+pub(super) fn rounded_up(value: f64) -> f32 {
     let rounded = value as f32;
     if f64::from(rounded) < value { rounded.next_up() } else { rounded }
-}
-
-/// Looks for the closest point.
-struct Search {
-    point: [f32; 3],
-    limit: f64,
-    best: Option<(u32, Nearest)>,
-}
-
-impl NearVisitor for Search {
-    #[inline(always)]
-    fn block(&mut self, block: &Block) -> f32 {
-        let bounds = squared_bounds(block, self.point);
-        for lane in 0..LANES {
-            // Of a free lane not even an infinite limit is in reach.
-            if bounds[lane] <= rounded_up(self.limit) && bounds[lane] < f32::INFINITY {
-                self.look(block.triangle(lane));
-            }
-        }
-        rounded_up(self.limit)
-    }
-}
-
-impl Search {
-    #[inline]
-    fn look(&mut self, (triangle, corners): (u32, [[f32; 3]; 3])) {
-        let best = self.best.map(|(best, _)| best);
-        if best == Some(triangle) {
-            return;
-        }
-        let nearest = nearest_on_triangle(self.point, &corners);
-        let tie = || best.is_none_or(|best| triangle < best);
-        let distance = nearest.squared_distance;
-        if distance < self.limit || distance == self.limit && tie() {
-            self.limit = distance;
-            self.best = Some((triangle, nearest));
-        }
-    }
 }
 
 /// Collects the triangles within a sphere, some more than once.
@@ -150,16 +125,70 @@ struct Within<'a> {
     triangles: &'a mut Vec<u32>,
 }
 
-impl NearVisitor for Within<'_> {
-    fn block(&mut self, block: &Block) -> f32 {
+impl<'a> NearVisitor<'a> for Within<'_> {
+    #[inline(always)]
+    fn start<E: Eights>(&mut self, _point: &[E; 3]) -> f32 {
+        rounded_up(self.limit)
+    }
+
+    fn is_far(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn leaves<E: Eights>(&mut self, blocks: &'a [Block], leaves: &[Child], point: &[E; 3]) -> f32 {
         let until = rounded_up(self.limit);
-        let bounds = squared_bounds(block, self.center);
-        for lane in (0..LANES).filter(|lane| bounds[*lane] <= until) {
-            let (triangle, corners) = block.triangle(lane);
-            if nearest_on_triangle(self.center, &corners).squared_distance <= self.limit {
-                self.triangles.push(triangle);
+        for block in leaves.iter().flat_map(|leaf| blocks_of(blocks, *leaf)) {
+            let least = apart(block, point).least.numbers();
+            for lane in block.places().filter(|lane| least[*lane] <= until) {
+                let (triangle, corners) = block.triangle(lane);
+                if nearest_on_triangle(self.center, &corners).squared_distance <= self.limit {
+                    self.triangles.push(triangle);
+                }
             }
         }
         until
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::noise::noise;
+    use crate::trace::simd::Best;
+    use crate::{BatchOptions, BuildOptions, Mesh, Tree};
+
+    #[test]
+    fn the_plain_way_and_batches_find_what_the_fast_way_finds() {
+        let mut state = 9;
+        let mut any = || noise(&mut state);
+        let corner = |[x, y, z]: [f32; 3], any: &mut dyn FnMut() -> f32| {
+            [x + 0.1 * any(), y + 0.1 * any(), z + 0.1 * any()]
+        };
+        let soup: Vec<[f32; 3]> = (0..2000)
+            .flat_map(|_| {
+                let place = [any(), any(), any()];
+                [(); 3].map(|()| corner(place, &mut any))
+            })
+            .collect();
+        let triangles: Vec<_> = (0..2000).map(|at| [3 * at, 3 * at + 1, 3 * at + 2]).collect();
+        let mesh = Mesh::new(&soup, &triangles).expect("sound");
+        let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
+        let (fast, mut plain) = (Tracer::new(&mesh, &tree), Tracer::new(&mesh, &tree));
+        plain.trip.simd = Best::Plain;
+        let points = (0..1000).map(|_| [any(), any(), any()].map(|v| 1.6 * v - 0.3));
+        let points: Vec<_> = points.chain(soup[..500].to_vec()).collect();
+        let mut batched = vec![None; points.len()];
+        let batch = fast.batch(BatchOptions::default()).expect("the threads are there");
+        batch.closest_points(&points, f32::INFINITY, &mut batched).expect("nobody cancels");
+        let (mut some, mut others) = (Vec::new(), Vec::new());
+        for (point, batched) in points.iter().zip(batched) {
+            let found = fast.closest_point(*point, f32::INFINITY);
+            assert_eq!(found, plain.closest_point(*point, f32::INFINITY), "{point:?}");
+            assert_eq!(found, batched, "{point:?}");
+            fast.within_sphere(*point, 0.1, &mut some);
+            plain.within_sphere(*point, 0.1, &mut others);
+            assert_eq!(some, others, "{point:?}");
+        }
     }
 }

@@ -6,17 +6,23 @@ use super::wide::Child;
 use crate::build::MAX_DEPTH;
 
 /// Every step takes one visit and puts back at most eight, and goes down a level at least. The
-/// last eight places are never on the stack: [`Stack::push_avx2`] writes eight whatever it pushes.
+/// last eight places are never on the stack: some write eight whatever they push.
 const CAPACITY: usize = 7 * (MAX_DEPTH as usize + 1) + 16;
 
-/// A stack of subtrees to be visited, and of the `t` where the ray enters each.
-pub(super) struct Stack {
+/// Room for a traversal that takes two visits a step, of nodes in the order of their levels: then a
+/// level has at most sixteen, and two of them are gone before there is another below it.
+pub(super) const CAPACITY_OF_TWO: usize = 14 * (MAX_DEPTH as usize + 1) + 32;
+
+pub(super) type Stack = StackOf<CAPACITY>;
+
+/// A stack of subtrees to be visited, and of the `t` where the ray enters each, or how far they are.
+pub(super) struct StackOf<const CAPACITY: usize> {
     children: [MaybeUninit<Child>; CAPACITY],
     t_min: [MaybeUninit<f32>; CAPACITY],
     height: usize,
 }
 
-impl Stack {
+impl<const CAPACITY: usize> StackOf<CAPACITY> {
     #[inline(always)]
     pub(super) fn new() -> Self {
         Self {
@@ -60,6 +66,18 @@ impl Stack {
             let t_min_end = self.t_min.as_mut_ptr().add(self.height);
             _mm256_storeu_si256(children_end.cast(), children);
             _mm256_storeu_ps(t_min_end.cast(), t_min);
+        }
+        self.height += count;
+    }
+
+    /// Pushes the first `count` of eight subtrees.
+    #[inline(always)]
+    pub(super) fn push_eight(&mut self, children: [Child; 8], near: [f32; 8], count: usize) {
+        debug_assert!(self.height + 8 <= CAPACITY, "a level pushes seven");
+        // SAFETY: by the number of levels there is room for eight above the height.
+        unsafe {
+            self.children.as_mut_ptr().add(self.height).cast::<[Child; 8]>().write(children);
+            self.t_min.as_mut_ptr().add(self.height).cast::<[f32; 8]>().write(near);
         }
         self.height += count;
     }

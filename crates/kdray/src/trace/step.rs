@@ -224,8 +224,16 @@ pub(super) fn far_to_near_avx2<V>(
     let places = nibbles(unsafe { *wide.order.get_unchecked(octant) });
     let met = _mm256_permutevar8x32_epi32(_mm256_castps_si256(met), places);
     let met = _mm256_movemask_ps(_mm256_castsi256_ps(met)) as u32;
-    let places = _mm256_permutevar8x32_epi32(places, nibbles(PLACES[met as usize & 255]));
+    let places = _mm256_permutevar8x32_epi32(places, self::places(met));
     (places, met.count_ones() as usize)
+}
+
+/// The places of the bits of a byte, the lowest first.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+#[target_feature(enable = "avx2")]
+pub(super) fn places(byte: u32) -> std::arch::x86_64::__m256i {
+    nibbles(PLACES[byte as usize & 255])
 }
 
 /// Eight numbers of four bits, the lowest first; of each lane the lowest three bits count.
@@ -259,12 +267,7 @@ static PLACES: [u32; 256] = {
 mod tests {
     use super::*;
     use crate::geometry::Aabb;
-
-    /// Numbers without a pattern, in 0..1.
-    fn noise(state: &mut u32) -> f32 {
-        *state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
-        (*state >> 8) as f32 / (1 << 24) as f32
-    }
+    use crate::trace::noise::noise;
 
     fn random_wide(state: &mut u32) -> Wide {
         let mut wide = Wide::EMPTY;

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 use super::fill::Chunk;
 use super::{Batch, BatchError, Lists};
 use crate::geometry::Aabb;
-use crate::geometry::vector::{dot, minus};
-use crate::trace::{ClosestPoint, Sign, Tracer};
+use crate::trace::closest::Seeds;
+use crate::trace::{ClosestPoint, Sign};
 
 /// Queries of points. They panic if there are not as many answers as points, and see every
 /// triangle.
@@ -19,8 +19,8 @@ impl Batch<'_> {
         max_distance: f32,
         closest: &mut [Option<ClosestPoint>],
     ) -> Result<(), BatchError> {
-        let ask = |last: &mut Last, _: usize, point: &_| {
-            last.closest_point(self.tracer, *point, max_distance)
+        let ask = |seeds: &mut Seeds, _: usize, point: &_| {
+            self.tracer.closest_near(*point, max_distance, seeds)
         };
         self.fill(points, closest, true, |point| self.key_of_point(point), ask)
     }
@@ -33,8 +33,8 @@ impl Batch<'_> {
         sign: Sign,
         distances: &mut [Option<f32>],
     ) -> Result<(), BatchError> {
-        let ask = |last: &mut Last, _: usize, point: &_| {
-            Some(last.closest_point(self.tracer, *point, f32::INFINITY)?.distance)
+        let ask = |seeds: &mut Seeds, _: usize, point: &_| {
+            Some(self.tracer.closest_near(*point, f32::INFINITY, seeds)?.distance)
         };
         let mut inside = vec![false; points.len()];
         let key = |point: &_| self.key_of_point(point);
@@ -93,33 +93,5 @@ impl Batch<'_> {
             self.tracer.within_box(region, triangles);
         };
         self.stream(regions, ask, sink)
-    }
-}
-
-/// The last point that was asked about, and how far from the surface it is.
-///
-/// The next point is no farther than that and the way to it: a bound to begin with.
-#[derive(Default)]
-struct Last(Option<([f32; 3], f32)>);
-
-/// More than the roundings of such a bound, relative to it.
-const SLACK: f32 = 8.0 * f32::EPSILON;
-
-impl Last {
-    fn closest_point(
-        &mut self,
-        tracer: &Tracer,
-        point: [f32; 3],
-        max_distance: f32,
-    ) -> Option<ClosestPoint> {
-        let bound = self.0.map_or(f32::INFINITY, |(last, distance)| {
-            let way = minus(point.map(f64::from), last.map(f64::from));
-            (dot(way, way).sqrt() as f32 + distance) * (1.0 + SLACK) + f32::MIN_POSITIVE
-        });
-        // A distance that is no number stays one, and finds nothing.
-        let limit = if bound < max_distance { bound } else { max_distance };
-        let closest = tracer.closest_point(point, limit)?;
-        self.0 = Some((point, closest.distance));
-        Some(closest)
     }
 }

@@ -11,30 +11,10 @@ mod tests;
 use std::ops::{Add, Div, Mul, Sub};
 
 use crate::geometry::Ray;
+pub(in crate::trace) use crate::trace::eights::by_axis;
 
 pub(in crate::trace) use eight::Eight;
 pub(in crate::trace) use sixteen::Sixteen;
-
-/// A value for each axis. A closure would not do: it is compiled apart, for any processor.
-macro_rules! by_axis {
-    (|$axis:ident| $value:expr) => {
-        [
-            {
-                let $axis = 0;
-                $value
-            },
-            {
-                let $axis = 1;
-                $value
-            },
-            {
-                let $axis = 2;
-                $value
-            },
-        ]
-    };
-}
-pub(in crate::trace) use by_axis;
 
 /// The most lanes that a vector has.
 pub(in crate::trace) const MOST: usize = 16;
