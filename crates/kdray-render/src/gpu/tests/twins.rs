@@ -177,10 +177,11 @@ fn samples_add_up_to_what_they_do_on_the_cpu() {
         let normal = (vector() + 2.0 * Vec3::Z).normalize();
         Path {
             background: vector(),
-            haze: if index % 3 == 0 { vector().x } else { 0.0 },
-            position: vector() * Vec3::new(1.0, 1.0, if index % 5 == 0 { 3.0 } else { 0.1 }),
+            haze: if index.is_multiple_of(3) { vector().x } else { 0.0 },
+            position: vector()
+                * Vec3::new(1.0, 1.0, if index.is_multiple_of(5) { 3.0 } else { 0.1 }),
             has_surface: u32::from(index % 7 > 1),
-            normal: if index % 11 == 0 { Vec3::X } else { normal },
+            normal: if index.is_multiple_of(11) { Vec3::X } else { normal },
             rays: index % 9,
             albedo: vector(),
             hits: index % 4,
