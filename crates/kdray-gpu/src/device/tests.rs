@@ -30,8 +30,7 @@ fn what_a_driver_complains_of_is_an_error_that_stays() {
 
 #[test]
 fn a_kernel_that_is_no_wgsl_is_an_error_with_its_name() {
-    const BROKEN: crate::record::Kernel =
-        crate::record::Kernel { name: "broken", source: "fn broken( {", bindings: &[] };
+    const BROKEN: Kernel = Kernel { name: "broken", source: "fn broken( {", bindings: &[] };
     let device = open();
     let error = device.pipeline(&BROKEN).unwrap_err().to_string();
     assert!(error.contains("the kernel broken"), "{error}");
