@@ -92,6 +92,16 @@ fn the_gpu_answers_what_the_cpu_answers() {
         assert!(read("cpu.npz") == read("gpu.npz"), "{kind}");
         assert!(report["adapter"].as_str().is_some_and(|text| !text.is_empty()), "{report}");
     }
+    let profiled = "query knot.off --rays rays.npy --profile --json";
+    let report = on_gpu(&bench, &format!("{profiled} --device {device}"));
+    let profile = &report["profile"];
+    for figure in ["million_rays_per_s", "cpu_million_rays_per_s", "nodes_per_ray"] {
+        assert!(profile[figure].as_f64().is_some_and(|figure| figure > 0.0), "{report}");
+    }
+    assert!(profile["triangle_tests_per_ray"].as_f64() >= Some(1.0), "every ray hits: {report}");
+    assert_eq!(profile["private_bytes"].as_array().map(Vec::len), Some(2), "{report}");
+    let error = bench.error("query knot.off --rays rays.npy --profile");
+    assert!(error.contains("--device gpu"), "{error}");
     let points = "query knot.off --points rays.npy --device gpu";
     let assert = bench.kdray(points).assert().failure();
     let message = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();

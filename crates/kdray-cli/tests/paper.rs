@@ -106,6 +106,7 @@ fn a_gpu_adds_its_work() {
     let report: Value = serde_json::from_slice(&output).expect("one JSON value");
     let gpu = &report["scenes"][0]["gpu"];
     assert_eq!(gpu["same_tree"], true);
+    assert_eq!(gpu["same_hits"], true);
     for figure in ["dispatches", "readbacks", "bytes_moved", "floor_s", "peak_bytes"] {
         assert!(gpu["profile"][figure].as_f64().is_some_and(|x| x > 0.0), "{figure}");
     }

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use kdray::{BatchError, Hit, Ray};
 
-use super::kernels::{CLOSEST, Rays};
+use super::kernels::{CLOSEST, PRIVATE_BYTES, Rays};
 use super::tracer::Tracer;
 use crate::device::Buffer;
 use crate::error::GpuError;
@@ -40,6 +40,9 @@ pub struct TraceReport {
     pub leaves: u64,
     /// Triangles.
     pub tests: u64,
+    /// Bytes of memory that a ray has for itself while it is followed, and while it is worked out where
+    /// it hits. Less of it lets a GPU keep more rays in flight.
+    pub private_bytes: [u32; 2],
     /// By kernel, what it moved of rays and answers, and how long it took.
     pub profile: Profile,
 }
@@ -68,7 +71,7 @@ impl Batch<'_> {
     ) -> Result<TraceReport, GpuError> {
         let [triangles, found] = [self.answers(rays, 1)?, self.answers(rays, 4)?];
         let counts = self.answers(rays, 4)?;
-        let mut report = TraceReport::default();
+        let mut report = TraceReport { private_bytes: PRIVATE_BYTES, ..TraceReport::default() };
         self.in_chunks(rays, hits, |rays, hits| {
             let scene = &self.tracer.scene;
             let mut recording = Recording::new(self.tracer.device());

@@ -46,6 +46,9 @@ pub(crate) static ORDER: Kernel = Kernel {
     bindings: &[Uniform, Read, Read, Read, Write, Write],
 };
 
+/// Bytes of the private variables of `closest` and of `locate`; the test of layouts counts them.
+pub(crate) const PRIVATE_BYTES: [u32; 2] = [997, 656];
+
 /// What every kernel of a query is told.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]

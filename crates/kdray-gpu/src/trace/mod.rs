@@ -15,10 +15,10 @@ pub use batch::{Batch, TraceOptions, TraceReport};
 pub use kernels::Rays;
 pub use tracer::Tracer;
 
-pub(crate) use kernels::LOCATE;
+use kernels::{ANY, LOCATE_MET, MEET, ORDER};
+pub(crate) use kernels::{CLOSEST, LOCATE};
 #[cfg(test)]
-pub(crate) use kernels::Params;
-use kernels::{ANY, CLOSEST, LOCATE_MET, MEET, ORDER};
+pub(crate) use kernels::{PRIVATE_BYTES, Params};
 
 use crate::record::Kernel;
 

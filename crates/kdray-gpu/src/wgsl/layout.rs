@@ -148,6 +148,17 @@ fn constant(kernel: &Kernel, name: &str) -> u32 {
     }
 }
 
+#[test]
+fn private_memory_is_what_is_said() {
+    let bytes = [&trace::CLOSEST, &trace::LOCATE].map(|kernel| {
+        let module = parse(kernel);
+        let variables = module.global_variables.iter().map(|(_, variable)| variable);
+        let own = variables.filter(|variable| variable.space == AddressSpace::Private);
+        own.map(|variable| module.types[variable.ty].inner.size(module.to_ctx())).sum::<u32>()
+    });
+    assert_eq!(bytes, trace::PRIVATE_BYTES);
+}
+
 macro_rules! named {
     ($($name:ident)*) => { [$((stringify!($name), recipe::$name)),*] };
 }

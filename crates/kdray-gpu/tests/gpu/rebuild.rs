@@ -73,21 +73,53 @@ fn a_budget_holds_with_the_memory_that_is_kept() {
     rebuild(&device, [&small, &mesh, &small, &mesh], &options);
 }
 
-#[test]
-fn a_character_runs() {
-    let Some(base) = shared::mesh("animated/soldier_f00.ply") else { return };
-    let path = Path::new(shared::FOLDER).join("animated/soldier_24frames.f32");
+/// The frames of a mesh whose positions in each are in a file; `None` if it is not there.
+fn frames(base: &str, positions: &str) -> Option<Vec<Mesh>> {
+    let base = shared::mesh(base)?;
+    let path = Path::new(shared::FOLDER).join(positions);
     let bytes = std::fs::read(path).expect("the frames are beside the base");
     let floats = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
     let floats: Vec<f32> = floats.collect();
     let frames = floats.as_chunks::<3>().0.chunks(base.positions().len());
-    let frames: Vec<Mesh> =
-        frames.map(|frame| Mesh::new(frame, base.triangles()).expect("finite")).collect();
-    assert_eq!(frames.len(), 24);
+    Some(frames.map(|frame| Mesh::new(frame, base.triangles()).expect("finite")).collect())
+}
+
+/// Every frame has the tree of a fresh build; no kernel is compiled after the first, and buffers are
+/// allocated only for trees that are larger than all before.
+fn check_sequence(frames: &[Mesh]) {
     let device = open(vulkan::LAVAPIPE, &Limits::PORTABLE);
-    let used = rebuild(&device, &frames, &BuildOptions::default());
+    let options = BuildOptions::default();
+    let used = rebuild(&device, &frames[..1], &options);
+    let compiled = device.compiled();
+    let used = [used, rebuild(&device, frames, &options)].concat();
     println!("bytes and allocations: {used:?}");
-    // Trees of some frames are larger than all before.
-    assert!(used[23][0] <= used[0][0] + used[0][0] / 20, "{used:?}");
-    assert!(used[23][1] <= used[0][1] + 8, "{used:?}");
+    assert_eq!(device.compiled(), compiled);
+    let (first, last) = (used[1], used[used.len() - 1]);
+    assert!(last[0] <= first[0] + first[0] / 20, "{used:?}");
+    assert!(last[1] <= first[1] + 8, "{used:?}");
+}
+
+#[test]
+fn a_character_runs() {
+    let Some(frames) = frames("animated/soldier_f00.ply", "animated/soldier_24frames.f32") else {
+        return;
+    };
+    assert_eq!(frames.len(), 24);
+    check_sequence(&frames);
+}
+
+#[test]
+fn a_cloth_falls() {
+    let files = [92, 93].map(|frame| format!("animated/cloth_ball_f{frame}.ply"));
+    let frames: Option<Vec<Mesh>> = files.iter().map(|file| shared::mesh(file)).collect();
+    frames.into_iter().for_each(|frames| check_sequence(&frames));
+}
+
+/// Takes a minute on two idle cores.
+#[test]
+#[ignore = "long"]
+fn a_dragon_explodes() {
+    let base = "animated/exploding_dragon_substitute_f00.ply";
+    let frames = frames(base, "animated/exploding_dragon_substitute_16frames.f32");
+    frames.into_iter().for_each(|frames| check_sequence(&frames));
 }

@@ -2,6 +2,7 @@
 
 mod answers;
 mod ask;
+mod profile;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -19,6 +20,7 @@ use crate::sizes::count;
 use crate::topology::Topology;
 use crate::{arguments, atomic, cancel, input, npy, output};
 use answers::Answers;
+use profile::Profile;
 
 #[derive(Args)]
 #[command(after_help = ARRAYS)]
@@ -52,6 +54,9 @@ pub(crate) struct Arguments {
     /// Ask queries that are near each other one after the other, whatever their order
     #[arg(long)]
     reorder: bool,
+    /// Say what closest hits take on a GPU, beside the CPU: rates, and what a ray visits and tests
+    #[arg(long)]
+    profile: bool,
     #[command(flatten)]
     pub(crate) json: arguments::Json,
 }
@@ -133,6 +138,8 @@ struct Report {
     /// The GPU that was asked.
     #[serde(skip_serializing_if = "Option::is_none")]
     adapter: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    profile: Option<Profile>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
@@ -158,7 +165,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         None => ask_cpu(&mesh, &question, &queries, arguments, cancel)?,
         Some(device) => ask_gpu(device, &mesh, &question, &queries, arguments, cancel)?,
     };
-    let Asked { answers, seconds, build_s } = asked;
+    let Asked { answers, seconds, build_s, profile } = asked;
     if let Some(target) = &arguments.output {
         atomic::write(target, |file, _| answers.write(&frame, file))?;
     }
@@ -169,6 +176,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         query_s_median: seconds[seconds.len() / 2],
         simd: Tracer::simd(),
         adapter: device.map(|device| device.adapter().name.clone()),
+        profile,
     };
     output::print(arguments.json.json, &report, &report.text())?;
     Ok(ExitCode::SUCCESS)
@@ -179,6 +187,7 @@ struct Asked {
     answers: Answers,
     build_s: f64,
     seconds: Vec<f64>,
+    profile: Option<Profile>,
 }
 
 fn build_options<'a>(
@@ -216,7 +225,7 @@ fn ask_cpu(
         ..BatchOptions::default()
     })?;
     let (answers, seconds) = repeated(arguments.repeat, || question.ask(&batch, queries))?;
-    Ok(Asked { answers, build_s, seconds })
+    Ok(Asked { answers, build_s, seconds, profile: None })
 }
 
 fn ask_gpu(
@@ -242,7 +251,14 @@ fn ask_gpu(
         ..TraceOptions::default()
     });
     let (answers, seconds) = repeated(arguments.repeat, || question.ask_gpu(&batch, queries))?;
-    Ok(Asked { answers, build_s, seconds })
+    let profile = match queries {
+        ask::Queries::Rays(rays) if arguments.profile => {
+            let threads = arguments::resolved_threads(arguments.threads);
+            Some(Profile::of(&batch, (mesh, &tree), rays, (seconds[0], threads))?)
+        }
+        _ => None,
+    };
+    Ok(Asked { answers, build_s, seconds, profile })
 }
 
 /// The last answers, and the times of all, the shortest first.
@@ -288,6 +304,10 @@ impl Arguments {
             has_rays || self.device == Choice::Cpu,
             "only rays can be asked on a GPU: points want --device cpu"
         );
+        anyhow::ensure!(
+            !self.profile || (kind == Kind::Closest && self.device != Choice::Cpu),
+            "--profile is of closest hits on a GPU: give --device gpu and --kind closest"
+        );
         anyhow::ensure!(kind != Kind::Within || self.radius.is_some(), "within needs --radius");
         Ok(kind)
     }
@@ -306,7 +326,7 @@ impl Arguments {
 impl Report {
     fn text(&self) -> String {
         let rate = self.queries as f64 / self.query_s.max(1e-9) * 1e-6;
-        output::table(&[
+        let table = output::table(&[
             ("queries", count(self.queries)),
             ("build", format!("{:.3} s", self.build_s)),
             ("queries", format!("{:.4} s, {rate:.3} million a second", self.query_s)),
@@ -314,6 +334,8 @@ impl Report {
                 None => ("SIMD", self.simd.to_owned()),
                 Some(adapter) => ("GPU", adapter.clone()),
             },
-        ])
+        ]);
+        let profile = self.profile.as_ref().map(Profile::text);
+        table + &profile.map_or_else(String::new, |profile| format!("\n{profile}"))
     }
 }

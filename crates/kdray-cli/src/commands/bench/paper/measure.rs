@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use anyhow::Context;
 use kdray::{BuildError, BuildOptions, Mesh, Tracer, Tree};
-use kdray_gpu::{Device, Kind};
+use kdray_gpu::{Device, Kind, TraceOptions};
 use kdray_render::Camera;
 use serde::Serialize;
 
@@ -35,8 +35,11 @@ pub(super) struct GpuFigures {
     /// Without the profile, which takes time itself; the best of all passes, of which a software
     /// device has one.
     pub(super) build_s: f64,
-    /// Whether the tree has the bytes of the CPU's.
+    /// The closest hits of 1024 x 1024 camera rays, from the host's memory and back.
+    pub(super) trace_s: f64,
+    /// Whether the tree has the bytes of the CPU's, and the rays its hits.
     pub(super) same_tree: bool,
+    pub(super) same_hits: bool,
     pub(super) profile: Profile,
 }
 
@@ -82,7 +85,7 @@ pub(super) fn cpu(
 
 /// Measures builds on `device`, beside `expected`, which the CPU built.
 pub(super) fn gpu(
-    mesh: &Mesh,
+    (mesh, camera): (&Mesh, &Camera),
     device: &Device,
     expected: &Tree,
     plan: &Plan,
@@ -102,7 +105,31 @@ pub(super) fn gpu(
     let built = build(true)?;
     let same_tree = built.tree.to_bytes() == expected.to_bytes();
     let profile = built.gpu.and_then(|gpu| gpu.profile).context("a profile was asked for")?;
-    Ok(GpuFigures { build_s, same_tree, profile })
+    let (trace_s, same_hits) = gpu_trace(mesh, camera, device, expected, passes)?;
+    Ok(GpuFigures { build_s, trace_s, same_tree, same_hits, profile })
+}
+
+/// The best time of a picture's rays on `device`, and whether their hits are those of the CPU.
+fn gpu_trace(
+    mesh: &Mesh,
+    camera: &Camera,
+    device: &Device,
+    tree: &Tree,
+    passes: usize,
+) -> anyhow::Result<(f64, bool)> {
+    let tracer = kdray_gpu::Tracer::new(device, mesh, tree)?;
+    tracer.prepare()?;
+    let batch = tracer.batch(TraceOptions::default());
+    let rays = rays::through(camera, SIDE);
+    let (mut hits, mut expected) = (vec![None; rays.len()], vec![None; rays.len()]);
+    let mut trace_s = f64::INFINITY;
+    for _pass in 0..passes {
+        let start = Instant::now();
+        batch.closest_hits(&rays, &mut hits)?;
+        trace_s = trace_s.min(start.elapsed().as_secs_f64());
+    }
+    Tracer::new(mesh, tree).closest_hits(&rays, &mut expected);
+    Ok((trace_s, hits == expected))
 }
 
 pub(super) fn is_software(device: &Device) -> bool {

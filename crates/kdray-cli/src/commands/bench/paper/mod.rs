@@ -118,7 +118,7 @@ fn measured(
     let mesh = input::mesh(path, &arguments::Repair { drop_non_finite: false })?;
     let camera = picture::camera(&mesh, scene.view(), candidate.up);
     let (tree, cpu) = measure::cpu(&mesh, &camera, plan, &progress)?;
-    let gpu = |device: &Device| measure::gpu(&mesh, device, &tree, plan, &progress);
+    let gpu = |device: &Device| measure::gpu((&mesh, &camera), device, &tree, plan, &progress);
     let gpu = plan.device.map(gpu).transpose()?;
     let png = picture::png(&mesh, &tree, &camera, scene.view(), &progress, plan.cancel)?;
     Ok(Measured {

@@ -84,11 +84,13 @@ pub(super) fn speed(report: &Report) -> Markup {
     let real = report.device.as_ref().filter(|device| !device.is_software);
     let mut builds = vec!["this CPU"];
     builds.extend(real.map(|device| device.adapter.as_str()));
+    let mut traces = builds.clone();
     builds.extend(["paper", "Choi", "Lauterbach"]);
+    traces.extend(["paper", "Lauterbach"]);
     let groups = vec![
         group("Triangles", &["here", "paper"]),
         group("Build, s", &builds),
-        group("Trace, ms", &["this CPU", "paper", "Lauterbach"]),
+        group("Trace, ms", &traces),
     ];
     Table { report, groups }.rows(|scene, measured| {
         let paper = scene.paper;
@@ -101,8 +103,9 @@ pub(super) fn speed(report: &Report) -> Markup {
         cells.extend(real.map(|_| seconds(measured.gpu.as_ref().map(|gpu| gpu.build_s))));
         cells.push(seconds(Some(paper.build_s)));
         cells.extend([Peer::Choi, Peer::Lauterbach].map(|name| seconds(peer(name))));
-        let traces = [Some(measured.cpu.trace_s), Some(paper.trace_s), paper.peer_trace_s];
-        cells.extend(traces.map(milliseconds));
+        cells.push(milliseconds(Some(measured.cpu.trace_s)));
+        cells.extend(real.map(|_| milliseconds(measured.gpu.as_ref().map(|gpu| gpu.trace_s))));
+        cells.extend([Some(paper.trace_s), paper.peer_trace_s].map(milliseconds));
         cells
     })
 }
@@ -137,7 +140,7 @@ pub(super) fn work(report: &Report) -> Markup {
         group("Work", &["dispatches", "readbacks"]),
         group("Bytes moved", &["MB", "a triangle"]),
         group(&format!("Build at {BANDWIDTH} GB/s, s"), &["floor", "paper's time"]),
-        group("Tree", &["is the CPU's"]),
+        group("As the CPU's", &["tree", "hits"]),
     ];
     Table { report, groups }.rows(|scene, measured| {
         let Some(gpu) = &measured.gpu else { return Vec::new() };
@@ -151,6 +154,7 @@ pub(super) fn work(report: &Report) -> Markup {
             format!("{:.4}", profile.floor_s),
             seconds(Some(scene.paper.build_s)),
             if gpu.same_tree { "yes, byte for byte" } else { "no" }.to_owned(),
+            if gpu.same_hits { "yes, bit for bit" } else { "no" }.to_owned(),
         ]
     })
 }
@@ -179,10 +183,11 @@ pub(super) fn trees(report: &Report) -> Markup {
 
 /// Times of a software device, beside nothing.
 pub(super) fn software(report: &Report) -> Markup {
-    let groups = vec![group("Software device, s", &["build", "kernels, with the profile"])];
+    let groups =
+        vec![group("Software device, s", &["build", "kernels, with the profile", "trace"])];
     Table { report, groups }.rows(|_, measured| {
         let Some(gpu) = &measured.gpu else { return Vec::new() };
-        vec![seconds(Some(gpu.build_s)), seconds(Some(gpu.profile.kernels_ms / 1e3))]
+        [gpu.build_s, gpu.profile.kernels_ms / 1e3, gpu.trace_s].map(|s| seconds(Some(s))).to_vec()
     })
 }
 
