@@ -184,7 +184,7 @@ def test_builds_that_cannot_be(gpu):
         kdray.build(*cube(), device=gpu, builder="naive")
     with pytest.raises(MemoryError, match="memory budget of 1000 bytes"):
         kdray.build(*soup(1000), device=gpu, memory_budget=1000)
-    with pytest.raises(ValueError, match="option max_depth"):
+    with pytest.raises(ValueError, match="max_depth is 256"):
         kdray.build(*cube(), device=gpu, max_depth=256)
 
 

@@ -135,9 +135,26 @@ def test_children_ask_on(sphere, method):
 
 LONG = {
     "build": "kdray.build(vertices, faces)",
-    "all_hits": "while True: tree.all_hits(origins, directions)",
+    "other build": "kdray.build(vertices, faces, builder='resort')",
+    "load": "while True: kdray.load(path)",
+    "generate": "while True: kdray.generate.showcase(1_000_000)",
     "closest_hit": "while True: tree.closest_hit(many, many)",
+    "any_hit": "while True: tree.any_hit(many, many, exclude=0)",
+    "count_hits": "while True: tree.count_hits(many, many)",
+    "all_hits": "while True: tree.all_hits(origins, directions)",
+    "contains": "while True: tree.contains(many)",
+    "contains, winding": "while True: tree.contains(many, sign='winding')",
+    "winding_number": "while True: tree.winding_number(many, tolerance=1e-9)",
     "closest_point": "tree.closest_point(many)",
+    "signed_distance": "tree.signed_distance(many)",
+    "within_sphere": "while True: tree.within_sphere(origins, 0.5)",
+    "within_box": "while True: tree.within_box(origins - 0.5, origins + 0.5)",
+    "points": "while True: tree.closest_hit(many, many).points",
+    "stats": "while True: tree.stats",
+    "validate": "kdray.build(vertices[:300_000], faces[:100_000], max_depth=30).validate()",
+    "save": "while True: tree.save(path + '.kdray')",
+    "open": "while True: kdray.Tree.open(path + '.kdray')",
+    "pickle": "while True: pickle.loads(pickle.dumps(tree))",
     "render": "tree.render(2000, 2000, samples=64)",
 }
 
@@ -146,7 +163,7 @@ LONG = {
 @pytest.mark.parametrize("call", LONG)
 def test_ctrl_c_is_heard_within_a_second(tmp_path, call):
     script = f"""
-        import time, sys
+        import pickle, sys
         sys.path.insert(0, {os.path.dirname(__file__)!r})
         import kdray
         from conftest import icosphere, random_rays, soup
@@ -154,6 +171,11 @@ def test_ctrl_c_is_heard_within_a_second(tmp_path, call):
         origins, directions = random_rays(100_000)
         many = origins.repeat(50, 0)
         tree = kdray.build(*icosphere(4))
+        path = {str(tmp_path / "mesh.obj")!r}
+        tree.save(path + ".kdray")
+        with open(path, "w") as file:
+            file.writelines(f"v {{x}} {{y}} {{z}}\\n" for x, y, z in vertices[:90_000])
+            file.writelines(f"f {{a}} {{b}} {{c}}\\n" for a, b, c in faces[:30_000] + 1)
         print("ready", flush=True)
         try:
             {LONG[call]}

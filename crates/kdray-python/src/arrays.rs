@@ -69,7 +69,7 @@ impl Vertices<'_> {
             Self::Single(vertices) => Mesh::new(vertices, faces),
             Self::Double(vertices) => Mesh::from_f64(vertices, faces),
         };
-        mesh.map_err(error::value)
+        mesh.map_err(|error| error::mesh(&error))
     }
 }
 

@@ -43,7 +43,7 @@ impl Tree {
     ) -> PyResult<Self> {
         let (vertices, faces) = (vertices.vertices()?, threes(&faces)?);
         let (builder, choice) = (options.builder()?, options.choice(py)?);
-        run(py, options.threads, options.progress.as_ref(), |watch| {
+        let built = run(py, options.threads, options.progress.as_ref(), |watch| {
             let mesh = vertices.mesh(faces)?;
             let report = |fraction| watch.report(fraction);
             let build_options = BuildOptions {
@@ -57,28 +57,32 @@ impl Tree {
                 progress: Some(&report),
                 cancel: Some(watch.cancel()),
             };
-            Self::built(mesh, &build_options, choice)
-        })?
+            built(mesh, &build_options, choice)
+        })?;
+        let (scene, gpu) = built?;
+        let scene = Arc::new(scene);
+        Self { scene, gpu }.ready(py)
     }
 }
 
-impl Tree {
-    fn built(mesh: Mesh, options: &BuildOptions<'_>, choice: Choice) -> PyResult<Self> {
-        if let Choice::Gpu(device) | Choice::Rather(device) = choice {
-            match OnGpu::built(device, &mesh, options) {
-                Ok((tree, gpu)) => {
-                    return Ok(Self { scene: Arc::new(Scene::new(mesh, tree)), gpu: Some(gpu) });
-                }
-                Err(error) if choice.is_final() || error::is_of_build(&error) => {
-                    return Err(error::gpu(&error));
-                }
-                // There is still the CPU.
-                Err(_) => {}
+/// The mesh with its tree, and what that has on a GPU.
+fn built(
+    mesh: Mesh,
+    options: &BuildOptions<'_>,
+    choice: Choice,
+) -> PyResult<(Scene, Option<OnGpu>)> {
+    if let Choice::Gpu(device) | Choice::Rather(device) = choice {
+        match OnGpu::built(device, &mesh, options) {
+            Ok((tree, gpu)) => return Ok((Scene::new(mesh, tree), Some(gpu))),
+            Err(error) if choice.is_final() || error::is_of_build(&error) => {
+                return Err(error::gpu(&error));
             }
+            // There is still the CPU.
+            Err(_) => {}
         }
-        let tree = kdray::Tree::build(&mesh, options).map_err(|error| error::build(&error))?;
-        Ok(Self::new(mesh, tree))
     }
+    let tree = kdray::Tree::build(&mesh, options).map_err(|error| error::build(&error))?;
+    Ok((Scene::new(mesh, tree), None))
 }
 
 impl Options {

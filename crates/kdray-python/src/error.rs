@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use kdray::BuildError;
+use kdray::{BuildError, MeshError};
 use kdray_gpu::GpuError;
 use kdray_mesh::{LoadError, Reason};
 use pyo3::exceptions::{PyMemoryError, PyOSError, PyValueError};
@@ -29,10 +29,29 @@ pub(crate) fn load(error: &LoadError, path: &Path) -> PyErr {
     }
 }
 
+pub(crate) fn mesh(error: &MeshError) -> PyErr {
+    match error {
+        MeshError::NonFinite { vertex, position } => {
+            value(format!("vertices[{vertex}] is not finite: {position:?}"))
+        }
+        MeshError::IndexOutOfRange { .. } | MeshError::TooLarge { .. } => {
+            value(format!("faces: {error}"))
+        }
+    }
+}
+
 pub(crate) fn build(error: &BuildError) -> PyErr {
     match error {
         BuildError::MemoryBudget { .. } => PyMemoryError::new_err(error.to_string()),
         BuildError::Threads { .. } => PyOSError::new_err(error.to_string()),
+        BuildError::Option { option, value: given, expected } => {
+            let name = match *option {
+                "traversal" => "cost_traversal",
+                "intersect" => "cost_intersect",
+                other => other,
+            };
+            value(format!("{name} is {given}, which is not {expected}"))
+        }
         _ => value(error),
     }
 }

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Vectors, threes};
 use crate::error;
-use crate::run::run;
+use crate::run::{run, run_owned};
 use crate::tree::{Tree, table};
 
 /// Vertices, faces, and what the loader left out, in words.
@@ -22,7 +22,8 @@ type Loaded<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i32>>, Vec<St
 /// The mesh in a file.
 #[pyfunction]
 pub(crate) fn load(py: Python<'_>, path: PathBuf) -> PyResult<Loaded<'_>> {
-    let loaded = run(py, 0, None, |_| kdray_mesh::load(&path))?;
+    let asked = path.clone();
+    let loaded = run_owned(py, move || kdray_mesh::load(&asked))?;
     let loaded = loaded.map_err(|reason| error::load(&reason, &path))?;
     if i32::try_from(loaded.positions.len()).is_err() {
         return Err(error::value(format!(
@@ -48,11 +49,12 @@ impl Tree {
     /// The tree of `to_bytes`.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
-        run(py, 0, None, |_| {
+        let tree = run(py, 0, None, |_| {
             let (mesh, length) = Mesh::from_bytes(bytes).map_err(error::value)?;
             let tree = kdray::Tree::from_bytes(&bytes[length..]).map_err(error::value)?;
             checked(mesh, tree)
-        })?
+        })?;
+        tree?.ready(py)
     }
 
     /// The tree in a file of `to_bytes`, or in a tree file of the given mesh; used where it is.
@@ -64,19 +66,23 @@ impl Tree {
         mesh: Option<(Vectors<'_>, PyReadonlyArray2<'_, u32>)>,
     ) -> PyResult<Self> {
         let given = match &mesh {
-            Some((vertices, faces)) => Some((vertices.vertices()?, threes(faces)?)),
+            Some((vertices, faces)) => {
+                let (vertices, faces) = (vertices.vertices()?, threes(faces)?);
+                Some(run(py, 0, None, |_| vertices.mesh(faces))??)
+            }
             None => None,
         };
-        let in_file = |reason: String| error::value(format!("{}: {reason}", path.display()));
-        run(py, 0, None, |_| {
+        let tree = run_owned(py, move || {
+            let in_file = |reason: String| error::value(format!("{}: {reason}", path.display()));
             let map = Arc::new(mapped(&path)?);
             let (mesh, start) = match given {
-                Some((vertices, faces)) => (vertices.mesh(faces)?, 0),
+                Some(mesh) => (mesh, 0),
                 None => Mesh::from_bytes(&map).map_err(|reason| in_file(reason.to_string()))?,
             };
             let tree = kdray::Tree::from_shared(Arc::new(Rest(map, start)));
             checked(mesh, tree.map_err(|reason| in_file(reason.to_string()))?)
-        })?
+        })?;
+        tree?.ready(py)
     }
 }
 

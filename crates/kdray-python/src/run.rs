@@ -1,6 +1,7 @@
 //! Work on all cores, while the interpreter goes on and Ctrl-C is heard.
 
 use std::collections::HashMap;
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -83,7 +84,7 @@ pub(crate) fn run<T: Send>(
                     Err(RecvTimeoutError::Timeout) => {}
                     // The scope hands the panic on.
                     Err(RecvTimeoutError::Disconnected) => {
-                        return Err(PyRuntimeError::new_err("the work ended without an answer"));
+                        return Err(without_answer());
                     }
                 }
                 if let Err(error) = Python::attach(|py| watch.attend(py, progress)) {
@@ -97,6 +98,36 @@ pub(crate) fn run<T: Send>(
     watch.report(1.0);
     watch.attend(py, progress)?;
     Ok(answer)
+}
+
+/// Gives what `work` gives, on one thread a core and detached from the interpreter. It cannot be told
+/// to end: after a signal it goes on alone, and what it gives is dropped.
+///
+/// # Errors
+///
+/// What a signal handler raises.
+pub(crate) fn run_owned<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
+    let (sender, receiver) = mpsc::channel();
+    pool(0)?.spawn(move || {
+        // A panic is for the caller, if there still is one.
+        drop(sender.send(panic::catch_unwind(AssertUnwindSafe(work))));
+    });
+    py.detach(move || {
+        loop {
+            match receiver.recv_timeout(PATIENCE) {
+                Ok(answer) => return Ok(answer.unwrap_or_else(|it| panic::resume_unwind(it))),
+                Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
+                Err(RecvTimeoutError::Disconnected) => return Err(without_answer()),
+            }
+        }
+    })
+}
+
+fn without_answer() -> PyErr {
+    PyRuntimeError::new_err("the work ended without an answer")
 }
 
 /// The pools by their number of threads.

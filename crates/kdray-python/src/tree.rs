@@ -16,7 +16,7 @@ use crate::error;
 use crate::gpu::{self, OnGpu};
 use crate::near::{Points, within_boxes, within_spheres};
 use crate::rays::{Arguments, Rays};
-use crate::run::{Watch, run};
+use crate::run::{Watch, run, run_owned};
 use crate::scene::Scene;
 
 /// A mesh, its kd-tree, and the queries they allow.
@@ -34,7 +34,7 @@ type Lists<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i32>>);
 impl Tree {
     /// What is left of the tree in a pickle or a file.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyBytes>> {
-        let bytes = run(py, 0, None, |_| [self.scene.mesh.to_bytes(), self.scene.tree.to_bytes()])?;
+        let bytes = self.owned(py, |scene| [scene.mesh.to_bytes(), scene.tree.to_bytes()])?;
         let length = bytes.iter().map(Vec::len).sum();
         pyo3::types::PyBytes::new_with(py, length, |target| {
             let (mesh, tree) = target.split_at_mut(bytes[0].len());
@@ -125,6 +125,7 @@ impl Tree {
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let points = points.rows()?;
+        self.with_winding(py, winding)?;
         let inside = run(py, threads, None, |watch| {
             self.near(points).inside(self.scene.sign(winding), watch)
         })??;
@@ -140,6 +141,7 @@ impl Tree {
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let points = points.rows()?;
+        self.with_winding(py, winding)?;
         let distances = run(py, threads, None, |watch| {
             self.near(points).signed_distances(self.scene.sign(winding), watch)
         })??;
@@ -154,6 +156,7 @@ impl Tree {
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let points = points.rows()?;
+        self.with_winding(py, true)?;
         let frame = self.scene.mesh.frame();
         let numbers = run(py, threads, None, |watch| {
             let winding = self.scene.winding();
@@ -228,9 +231,9 @@ impl Tree {
     }
 
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let tree = &self.scene.tree;
-        let stats = run(py, 0, None, |_| tree.stats())?;
-        let sah_cost = stats.sah_cost(&tree.cost());
+        let (stats, tracer_bytes) =
+            self.owned(py, |scene| (scene.tree.stats(), scene.tracer().size_bytes()))?;
+        let sah_cost = stats.sah_cost(&self.scene.tree.cost());
         let Stats { nodes, leaves, empty_leaves, references, depth, .. } = stats;
         let Stats { leaf_histogram, e_inner, e_leaf, e_prim, bytes, .. } = stats;
         let dict = PyDict::new(py);
@@ -245,22 +248,43 @@ impl Tree {
         dict.set_item("e_prim", e_prim)?;
         dict.set_item("sah_cost", sah_cost)?;
         dict.set_item("tree_bytes", bytes)?;
-        dict.set_item("tracer_bytes", run(py, 0, None, |_| self.scene.tracer().size_bytes())?)?;
+        dict.set_item("tracer_bytes", tracer_bytes)?;
         Ok(dict)
     }
 
     /// Raises a ValueError that tells the first violation.
     fn validate(&self, py: Python<'_>) -> PyResult<()> {
-        run(py, 0, None, |_| self.scene.tree.validate(&self.scene.mesh))?.map_err(error::value)
+        self.owned(py, |scene| scene.tree.validate(&scene.mesh))?.map_err(error::value)
     }
 }
 
 impl Tree {
     /// A tree on the CPU.
     pub(crate) fn new(mesh: Mesh, tree: kdray::Tree) -> Self {
-        let scene = Scene::new(mesh, tree);
-        scene.tracer();
-        Self { scene: Arc::new(scene), gpu: None }
+        Self { scene: Arc::new(Scene::new(mesh, tree)), gpu: None }
+    }
+
+    /// With what the CPU needs to answer, if it is the one who answers.
+    pub(crate) fn ready(self, py: Python<'_>) -> PyResult<Self> {
+        if self.gpu.is_none() {
+            self.owned(py, |scene| _ = scene.tracer())?;
+        }
+        Ok(self)
+    }
+
+    /// Makes what winding numbers need, if they are wanted.
+    fn with_winding(&self, py: Python<'_>, wanted: bool) -> PyResult<()> {
+        if wanted { self.owned(py, |scene| _ = scene.winding()) } else { Ok(()) }
+    }
+
+    /// What `work` gives, without its keeping a signal waiting.
+    fn owned<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&Scene) -> T + Send + 'static,
+    ) -> PyResult<T> {
+        let scene = Arc::clone(&self.scene);
+        run_owned(py, move || work(&scene))
     }
 
     /// What answers rays, if that is a GPU. It knows nothing of masks.

@@ -10,7 +10,12 @@ from ._arrays import whole
 
 @dataclass(frozen=True)
 class Device:
-    """A device that trees can be built and asked on."""
+    """A device that trees can be built and asked on.
+
+    >>> import kdray
+    >>> kdray.devices()[0]
+    Device(name='cpu', kind='cpu', index=None, backend='', driver='')
+    """
 
     name: str
     """`cpu`, or what its driver calls it."""

@@ -85,7 +85,7 @@ class Hits(_OnTriangles, _HitsFields):
 
     @property
     def mask(self) -> NDArray[np.bool_]:
-        """Whether each ray hits anything."""
+        """Whether each ray hits anything, of the rays' shape."""
         return self.triangle >= 0
 
 
@@ -105,7 +105,7 @@ class AllHits(_OnTriangles, _AllHitsFields):
 
     @property
     def ray(self) -> NDArray[np.int64]:
-        """Which ray each hit is of."""
+        """Which ray each hit is of, `(n,)`."""
         return np.repeat(np.arange(len(self.offsets) - 1), np.diff(self.offsets))
 
 
@@ -115,11 +115,22 @@ class ClosestPoints(_ClosestPointsFields):
     `point` and `distance` have the dtype of the query. Where there is no point within the distance
     asked for, `triangle` is -1, `distance` infinite and `point` NaN. Of several triangles at the
     same distance it is the one with the lowest index.
+
+    >>> import kdray
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> tree.closest_point([[1., 1, 3], [1, 1, 9]], max_distance=5).distance
+    array([ 3., inf])
     """
 
 
 class Within(NamedTuple):
-    """Triangles near query `i` at `offsets[i]:offsets[i + 1]` of `triangle`, in ascending order."""
+    """Triangles near query `i` at `offsets[i]:offsets[i + 1]` of `triangle`, in ascending order.
+
+    >>> import kdray
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> tree.within_box([[0, 0, -1], [9, 9, 9]], [[1, 1, 1], [10, 10, 10]])
+    Within(offsets=array([0, 1, 1]), triangle=array([0], dtype=int32))
+    """
 
     offsets: NDArray[np.int64]
     triangle: NDArray[np.int32]
@@ -127,7 +138,12 @@ class Within(NamedTuple):
 
 class Stats(NamedTuple):
     """What a tree is like. `e_inner`, `e_leaf` and `e_prim` are what a random line through the
-    root's box is expected to meet of inner nodes, leaves and references."""
+    root's box is expected to meet of inner nodes, leaves and references.
+
+    >>> import kdray
+    >>> kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]]).stats.references
+    1
+    """
 
     nodes: int
     """Inner nodes and leaves."""

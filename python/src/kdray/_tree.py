@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import tempfile
 from collections.abc import Callable
@@ -65,7 +66,7 @@ def build(
         one of `kdray.devices()`, its index, or a part of its name. [WZL11]
     builder
         `"exact"`: O(N log N). `"resort"` and `"naive"` give the same tree, more slowly and on the
-        CPU only.
+        CPU only; `"naive"`, O(N²), looks between nodes whether to end.
     cost_traversal, cost_intersect, empty_bonus
         What a ray is thought to pay for a step and for a triangle, between 1e-6 and 1e6, and how
         much cutting off empty space is favoured, in 0..1. By default what was measured to be fast.
@@ -133,6 +134,11 @@ class Tree:
     Queries take arrays of any leading shape, `(…, 3)`, and answer in that shape; float32 and
     float64 arrays are not copied. Coordinates are those of the mesh's vertices. A ray
     or point that is not finite hits, finds and is in nothing.
+
+    >>> import kdray
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> tree
+    kdray.Tree(1 triangle, 3 vertices, 1 node, bounds [0 0 0] to [4 4 0])
     """
 
     __slots__ = ("_tree",)
@@ -457,32 +463,70 @@ class Tree:
 
     @property
     def triangle_count(self) -> int:
-        """How many triangles the mesh has."""
+        """How many triangles the mesh has.
+
+        >>> import kdray
+        >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> tree.triangle_count
+        1
+        """
         return self._tree.triangle_count
 
     @property
     def vertex_count(self) -> int:
-        """How many vertices the mesh has."""
+        """How many vertices the mesh has.
+
+        >>> import kdray
+        >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> tree.vertex_count
+        3
+        """
         return self._tree.vertex_count
 
     @property
     def bounds(self) -> NDArray[np.float64]:
-        """Lower and upper corner of the mesh's box, `(2, 3)`."""
+        """Lower and upper corner of the mesh's box, `(2, 3)`.
+
+        >>> import kdray
+        >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> tree.bounds
+        array([[0., 0., 0.],
+               [4., 4., 0.]])
+        """
         return self._tree.bounds
 
     @property
     def vertices(self) -> NDArray[np.float64]:
-        """The vertices as the tree keeps them: in f32, near the mesh if it is far away; a copy."""
+        """The vertices `(n, 3)` as the tree keeps them: in f32, near the mesh if it is far away; a
+        copy.
+
+        >>> import kdray
+        >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> tree.vertices[1]
+        array([4., 0., 0.])
+        """
         return self._tree.vertices()
 
     @property
     def faces(self) -> NDArray[np.int32]:
-        """Three vertices a triangle; a copy."""
+        """Three vertices a triangle, `(m, 3)`; a copy.
+
+        >>> import kdray
+        >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> tree.faces
+        array([[0, 1, 2]], dtype=int32)
+        """
         return self._tree.faces()
 
     @property
     def device(self) -> str:
-        """Where rays are answered: `"cpu"`, or the name of a GPU."""
+        """Where rays are answered: `"cpu"`, or the name of a GPU.
+
+        >>> import kdray
+        >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> tree.to("cpu").device
+        'cpu'
+        """
         gpu = self._tree.gpu
         return "cpu" if gpu is None else gpu[1]
 
@@ -503,6 +547,12 @@ class Tree:
         ------
         ValueError
             The first violation, in words.
+
+        Examples
+        --------
+        >>> import kdray
+        >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> tree.validate()
         """
         self._tree.validate()
 
@@ -539,6 +589,12 @@ class Tree:
         ------
         OSError
             The file cannot be written.
+
+        Examples
+        --------
+        >>> import kdray, os, tempfile
+        >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+        >>> tree.save(os.path.join(tempfile.mkdtemp(), "triangle.kdray"))
         """
         path = os.fspath(path)
         folder = os.path.dirname(path) or "."
@@ -549,7 +605,9 @@ class Tree:
             os.chmod(temporary, 0o666 & ~_umask())
             os.replace(temporary, path)
         except BaseException:
-            os.unlink(temporary)
+            # After a Ctrl-C it may be in its place already.
+            with contextlib.suppress(FileNotFoundError):
+                os.unlink(temporary)
             raise
 
     @staticmethod

@@ -74,18 +74,42 @@ class DaskClosestPoints(NamedTuple):
 
 
 def closest_hit(tree: TreeOrPath, origins: Any, directions: Any, **options: Any) -> DaskHits:
-    """`Tree.closest_hit` of rays in blocks: four arrays of the rays' shape."""
+    """`Tree.closest_hit` of rays in blocks: four arrays of the rays' shape.
+
+    >>> import dask.array as da
+    >>> import kdray.dask
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> points = da.from_array([[1., 1, 2], [5, 5, 2]], chunks=(1, 3))
+    >>> closest_hit(tree, points, [0.0, 0, -1]).t.compute()
+    array([ 2., inf], dtype=float32)
+    """
     records = _ask(_closest_hit, _HIT, tree, (origins, directions), options)
     return DaskHits(*(records[name] for name in _HIT.names or ()))
 
 
 def any_hit(tree: TreeOrPath, origins: Any, directions: Any, **options: Any) -> Any:
-    """`Tree.any_hit` of rays in blocks."""
+    """`Tree.any_hit` of rays in blocks.
+
+    >>> import dask.array as da
+    >>> import kdray.dask
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> points = da.from_array([[1., 1, 2], [5, 5, 2]], chunks=(1, 3))
+    >>> any_hit(tree, points, [0.0, 0, -1]).compute()
+    array([ True, False])
+    """
     return _ask(Tree.any_hit, np.dtype(bool), tree, (origins, directions), options)
 
 
 def count_hits(tree: TreeOrPath, origins: Any, directions: Any, **options: Any) -> Any:
-    """`Tree.count_hits` of rays in blocks."""
+    """`Tree.count_hits` of rays in blocks.
+
+    >>> import dask.array as da
+    >>> import kdray.dask
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> points = da.from_array([[1., 1, 2], [5, 5, 2]], chunks=(1, 3))
+    >>> count_hits(tree, points, [0.0, 0, -1]).compute()
+    array([1, 0], dtype=int32)
+    """
     return _ask(Tree.count_hits, np.dtype(np.int32), tree, (origins, directions), options)
 
 
@@ -93,27 +117,66 @@ def all_hits(tree: TreeOrPath, origins: Any, directions: Any, **options: Any) ->
     """`Tree.all_hits` of rays in blocks: a delayed `AllHits` for each block, in order.
 
     They come without the tree, and so without `points` and `normals`.
+
+    >>> import dask.array as da
+    >>> import kdray.dask
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> points = da.from_array([[1., 1, 2], [5, 5, 2]], chunks=(1, 3))
+    >>> [block.compute().offsets for block in all_hits(tree, points, [0.0, 0, -1])]
+    [array([0, 1]), array([0, 0])]
     """
     return _lists(_all_hits, tree, (origins, directions), options)
 
 
 def contains(tree: TreeOrPath, points: Any, **options: Any) -> Any:
-    """`Tree.contains` of points in blocks."""
+    """`Tree.contains` of points in blocks.
+
+    >>> import dask.array as da
+    >>> import kdray.dask
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> points = da.from_array([[1., 1, 2], [5, 5, 2]], chunks=(1, 3))
+    >>> contains(tree, points).compute()
+    array([False, False])
+    """
     return _ask(Tree.contains, np.dtype(bool), tree, (points,), options)
 
 
 def signed_distance(tree: TreeOrPath, points: Any, **options: Any) -> Any:
-    """`Tree.signed_distance` of points in blocks, in float64."""
+    """`Tree.signed_distance` of points in blocks, in float64.
+
+    >>> import dask.array as da
+    >>> import kdray.dask
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> points = da.from_array([[1., 1, 2], [5, 5, 2]], chunks=(1, 3))
+    >>> abs(signed_distance(tree, points)).compute()[0]
+    np.float64(2.0)
+    """
     return _ask(_signed_distance, np.dtype(np.float64), tree, (points,), options)
 
 
 def winding_number(tree: TreeOrPath, points: Any, **options: Any) -> Any:
-    """`Tree.winding_number` of points in blocks."""
+    """`Tree.winding_number` of points in blocks.
+
+    >>> import dask.array as da
+    >>> import kdray.dask
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> points = da.from_array([[1., 1, 2], [5, 5, 2]], chunks=(1, 3))
+    >>> winding_number(tree, points).compute().shape
+    (2,)
+    """
     return _ask(Tree.winding_number, np.dtype(np.float64), tree, (points,), options)
 
 
 def closest_point(tree: TreeOrPath, points: Any, **options: Any) -> DaskClosestPoints:
-    """`Tree.closest_point` of points in blocks, in float64."""
+    """`Tree.closest_point` of points in blocks, in float64.
+
+    >>> import dask.array as da
+    >>> import kdray.dask
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> points = da.from_array([[1., 1, 2], [5, 5, 2]], chunks=(1, 3))
+    >>> closest_point(tree, points).point.compute()[0]
+    array([1., 1., 0.])
+    """
     records = _ask(_closest_point, _CLOSEST, tree, (points,), options)
     place = records.map_blocks(
         _places, dtype=np.float64, new_axis=records.ndim, chunks=(*records.chunks, (3,))
@@ -122,12 +185,28 @@ def closest_point(tree: TreeOrPath, points: Any, **options: Any) -> DaskClosestP
 
 
 def within_sphere(tree: TreeOrPath, centers: Any, radius: float, **options: Any) -> list[Any]:
-    """`Tree.within_sphere` of points in blocks: a delayed `Within` for each block, in order."""
+    """`Tree.within_sphere` of points in blocks: a delayed `Within` for each block, in order.
+
+    >>> import dask.array as da
+    >>> import kdray.dask
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> points = da.from_array([[1., 1, 2], [5, 5, 2]], chunks=(1, 3))
+    >>> [block.compute().offsets for block in within_sphere(tree, points, 2.5)]
+    [array([0, 1]), array([0, 0])]
+    """
     return _lists(Tree.within_sphere, tree, (centers,), {"radius": radius, **options})
 
 
 def within_box(tree: TreeOrPath, lower: Any, upper: Any, **options: Any) -> list[Any]:
-    """`Tree.within_box` of boxes in blocks: a delayed `Within` for each block, in order."""
+    """`Tree.within_box` of boxes in blocks: a delayed `Within` for each block, in order.
+
+    >>> import dask.array as da
+    >>> import kdray.dask
+    >>> tree = kdray.build([[0., 0, 0], [4, 0, 0], [0, 4, 0]], [[0, 1, 2]])
+    >>> points = da.from_array([[1., 1, 2], [5, 5, 2]], chunks=(1, 3))
+    >>> [block.compute().offsets for block in within_box(tree, points - 2, points + 2)]
+    [array([0, 1]), array([0, 0])]
+    """
     return _lists(Tree.within_box, tree, (lower, upper), options)
 
 
