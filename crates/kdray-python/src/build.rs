@@ -61,7 +61,7 @@ impl Tree {
         })?;
         let (scene, gpu) = built?;
         let scene = Arc::new(scene);
-        Self { scene, gpu }.ready(py)
+        Self { scene, gpu }.ready(py, options.threads)
     }
 }
 

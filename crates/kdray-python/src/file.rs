@@ -23,7 +23,7 @@ type Loaded<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i32>>, Vec<St
 #[pyfunction]
 pub(crate) fn load(py: Python<'_>, path: PathBuf) -> PyResult<Loaded<'_>> {
     let asked = path.clone();
-    let loaded = run_owned(py, move || kdray_mesh::load(&asked))?;
+    let loaded = run_owned(py, 0, move || kdray_mesh::load(&asked))?;
     let loaded = loaded.map_err(|reason| error::load(&reason, &path))?;
     if i32::try_from(loaded.positions.len()).is_err() {
         return Err(error::value(format!(
@@ -54,7 +54,7 @@ impl Tree {
             let tree = kdray::Tree::from_bytes(&bytes[length..]).map_err(error::value)?;
             checked(mesh, tree)
         })?;
-        tree?.ready(py)
+        tree?.ready(py, 0)
     }
 
     /// The tree in a file of `to_bytes`, or in a tree file of the given mesh; used where it is.
@@ -72,7 +72,7 @@ impl Tree {
             }
             None => None,
         };
-        let tree = run_owned(py, move || {
+        let tree = run_owned(py, 0, move || {
             let in_file = |reason: String| error::value(format!("{}: {reason}", path.display()));
             let map = Arc::new(mapped(&path)?);
             let (mesh, start) = match given {
@@ -82,7 +82,7 @@ impl Tree {
             let tree = kdray::Tree::from_shared(Arc::new(Rest(map, start)));
             checked(mesh, tree.map_err(|reason| in_file(reason.to_string()))?)
         })?;
-        tree?.ready(py)
+        tree?.ready(py, 0)
     }
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn showcase(py: Python<'_>, triangles: usize) -> PyResult<Arrays<'_>>
 }
 
 fn made(py: Python<'_>, make: impl FnOnce() -> Loaded + Send + 'static) -> PyResult<Arrays<'_>> {
-    let Loaded { positions, triangles, .. } = run_owned(py, make)?;
+    let Loaded { positions, triangles, .. } = run_owned(py, 0, make)?;
     let faces = triangles.into_iter().map(|face| face.map(|index| index as i32)).collect();
     Ok((table(py, positions), table(py, faces)))
 }

@@ -100,18 +100,19 @@ pub(crate) fn run<T: Send>(
     Ok(answer)
 }
 
-/// Gives what `work` gives, on one thread a core and detached from the interpreter. It cannot be told
-/// to end: after a signal it goes on alone, and what it gives is dropped.
+/// Gives what `work` gives, on `threads` threads (0 for one a core) and detached from the interpreter.
+/// It cannot be told to end: after a signal it goes on alone, and what it gives is dropped.
 ///
 /// # Errors
 ///
 /// What a signal handler raises.
 pub(crate) fn run_owned<T: Send + 'static>(
     py: Python<'_>,
+    threads: usize,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
     let (sender, receiver) = mpsc::channel();
-    pool(0)?.spawn(move || {
+    pool(threads)?.spawn(move || {
         // A panic is for the caller, if there still is one.
         drop(sender.send(panic::catch_unwind(AssertUnwindSafe(work))));
     });

@@ -265,9 +265,10 @@ impl Tree {
     }
 
     /// With what the CPU needs to answer, if it is the one who answers.
-    pub(crate) fn ready(self, py: Python<'_>) -> PyResult<Self> {
+    pub(crate) fn ready(self, py: Python<'_>, threads: usize) -> PyResult<Self> {
         if self.gpu.is_none() {
-            self.owned(py, |scene| _ = scene.tracer())?;
+            let scene = Arc::clone(&self.scene);
+            run_owned(py, threads, move || _ = scene.tracer())?;
         }
         Ok(self)
     }
@@ -284,7 +285,7 @@ impl Tree {
         work: impl FnOnce(&Scene) -> T + Send + 'static,
     ) -> PyResult<T> {
         let scene = Arc::clone(&self.scene);
-        run_owned(py, move || work(&scene))
+        run_owned(py, 0, move || work(&scene))
     }
 
     /// What answers rays, if that is a GPU. It knows nothing of masks.
