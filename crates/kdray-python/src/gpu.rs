@@ -4,9 +4,8 @@ use std::mem;
 use std::ops::{ControlFlow, Range};
 use std::process;
 
-use kdray::{BuildOptions, Hit, Mesh, Ray};
+use kdray::{BuildOptions, Mesh, Ray};
 use kdray_gpu::{Batch, Device, GpuError, Kind, TraceOptions, Tracer};
-use kdray_render::{Caster, CasterError};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
@@ -127,17 +126,4 @@ fn in_blocks(
         ask(block, &tracer.batch(options), &local).map_err(|error| error::gpu(&error))?;
     }
     Ok(())
-}
-
-/// Traces the rays of pictures.
-pub(crate) struct OfPictures<'a>(pub(crate) &'a Tracer<'static>);
-
-impl Caster for OfPictures<'_> {
-    fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) -> Result<(), CasterError> {
-        Ok(self.0.batch(TraceOptions::default()).closest_hits(rays, hits)?)
-    }
-
-    fn any_hits(&self, rays: &[Ray], found: &mut [bool]) -> Result<(), CasterError> {
-        Ok(self.0.batch(TraceOptions::default()).any_hits(rays, found)?)
-    }
 }

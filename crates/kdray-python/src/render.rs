@@ -1,11 +1,12 @@
 //! Pictures.
 
-use kdray_render::{Camera, RenderOptions, Shading, render, render_with};
+use kdray_render::gpu::{RenderError, Renderer};
+use kdray_render::{Camera, RenderOptions, Shading, render};
 use numpy::{IntoPyArray, PyArray3, ndarray};
 use pyo3::prelude::*;
 
 use crate::error;
-use crate::gpu::{OfPictures, OnGpu};
+use crate::gpu::OnGpu;
 use crate::run::run;
 use crate::tree::Tree;
 
@@ -44,12 +45,15 @@ impl Tree {
                 ..RenderOptions::default()
             };
             let camera = options.camera(self, render_options.aspect());
-            let mesh = &self.scene.mesh;
+            let (mesh, tree) = (&self.scene.mesh, &self.scene.tree);
             match self.gpu.as_ref().and_then(OnGpu::tracer) {
-                Some(tracer) if shading != Shading::Cost => {
-                    render_with(&OfPictures(tracer), mesh, &camera, &render_options)
-                        .map_err(error::value)
-                }
+                Some(tracer) if shading != Shading::Cost => Renderer::new(tracer.device())
+                    .map_err(RenderError::from)
+                    .and_then(|mut it| it.render(mesh, tree, &camera, &render_options))
+                    .map_err(|error| match error {
+                        RenderError::Gpu(error) => error::gpu(&error),
+                        other => error::value(other),
+                    }),
                 _ => render(self.scene.tracer(), mesh, &camera, &render_options)
                     .map_err(error::value),
             }
