@@ -272,3 +272,24 @@ fn batches_can_be_empty_and_cancelled() {
     let error = batch.any_hits(&rays, &mut [false; 10]).unwrap_err();
     assert_eq!(error, GpuError::Batch(BatchError::Cancelled));
 }
+
+/// Smaller scenes in the memory of a larger one, one without triangles, and a larger one at last.
+#[test]
+fn a_tracer_takes_other_meshes_in_the_memory_it_has() {
+    let device = lavapipe();
+    let soup = |count| Scene::open("soup", &scenes::soup_of_size(count, 77, 0.3));
+    let subjects = [500, 40, 0, 450, 900].map(|count| Subject::of_scene(soup(count)));
+    let [first, ..] = &subjects;
+    let mut tracer = Tracer::new(device, &first.mesh, &first.tree).expect("it fits");
+    let size = tracer.size_bytes();
+    for (index, subject) in subjects.iter().enumerate() {
+        tracer.replace(&subject.mesh, &subject.tree).expect("it fits");
+        assert_eq!(tracer.size_bytes() == size, index < 4, "memory for scene {index}");
+        let rays = subject.rays(500, 78);
+        let mut hits = vec![None; rays.len()];
+        tracer.batch(TraceOptions::default()).closest_hits(&rays, &mut hits).expect("it runs");
+        for (ray, hit) in rays.iter().zip(hits) {
+            assert_eq!(bits(hit), bits(oracle::closest_hit(&subject.mesh, ray)), "{ray:?}");
+        }
+    }
+}
