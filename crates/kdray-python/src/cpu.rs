@@ -1,23 +1,25 @@
 //! Rays answered on the CPU.
 
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
-use kdray::{Batch, BatchError, BatchOptions, Hit, Ray};
+use kdray::{Batch, BatchError, BatchOptions, Hit, Lists, Ray};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use crate::arrays::zeros;
 use crate::columns::{Columns, Part};
-use crate::each::lists;
 use crate::error;
 use crate::order::{self, Order};
-use crate::rays::Rays;
+use crate::rays::{Rays, blocks};
 use crate::run::Watch;
 use crate::scene::Scene;
 
 /// Rays that a thread brings into the core's form and asks at a time. They and their hits fit the
 /// nearest cache; the core takes as many for one thread.
 const CHUNK: usize = 1024;
+
+/// Rays whose hits are listed together.
+const BLOCK: usize = 1 << 17;
 
 /// A ray that hits nothing, where one will be.
 const NOTHING: Ray = Ray { origin: [0.0; 3], t_min: 0.0, direction: [0.0; 3], t_max: 0.0 };
@@ -74,16 +76,28 @@ impl Asked<'_, '_> {
 
     /// The first `limit` hits of every ray, one ray after the other, and where each ray's begin.
     pub(crate) fn all(&self, limit: usize) -> PyResult<(Vec<i64>, Columns)> {
-        let Self { rays, watch, .. } = *self;
-        let tracer = self.scene.tracer();
-        let (offsets, hits) = lists(rays.len(), watch, |ray, hits: &mut Vec<Hit>| {
-            tracer.only(|other| rays.sees(ray, other)).first_hits(&rays.get(ray), limit, hits);
-        })?;
-        Ok((offsets, Columns::of_lists(&hits)?))
+        let mut offsets: Vec<i64> = zeros(self.rays.len() + 1)?;
+        let (mut found, mut local, mut end) = (Vec::new(), Vec::new(), 0);
+        let mut ends = offsets[1..].iter_mut();
+        for block in blocks(self.rays.len(), BLOCK) {
+            let of_block = block.clone().into_par_iter().map(|index| self.rays.get(index));
+            of_block.collect_into_vec(&mut local);
+            let take = |lists: Lists<'_, Hit>| {
+                for (list, offset) in lists.lists().zip(ends.by_ref()) {
+                    end += list.len() as i64;
+                    *offset = end;
+                }
+                found.push(lists.items.to_vec());
+                ControlFlow::Continue(())
+            };
+            let asked = self.batch(block).and_then(|it| it.first_hits(&local, limit, take));
+            asked.map_err(error::value)?;
+        }
+        Ok((offsets, Columns::of_lists(&found)?))
     }
 
-    /// Rays that are worth being brought in order together, if that is worth it. Rays that do not
-    /// see everything are asked one by one, in whatever order.
+    /// Rays that are worth being brought in order together, if that is worth it. Only for rays
+    /// that see everything: the others have a triangle each to leave out.
     fn window(&self) -> Option<usize> {
         let sees_all = self.rays.mask.is_none() && self.rays.except(0..0).is_none();
         let pays = sees_all && order::pays(self.rays, self.scene.tree.bounds());

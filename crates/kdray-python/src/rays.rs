@@ -97,13 +97,6 @@ impl Rays<'_> {
     pub(crate) fn except(&self, range: Range<usize>) -> Option<&[u32]> {
         self.exclude.map(|exclude| bytemuck::cast_slice(&exclude[range]))
     }
-
-    /// Whether a triangle counts for a ray.
-    #[inline]
-    pub(crate) fn sees(&self, ray: usize, triangle: u32) -> bool {
-        self.exclude.is_none_or(|exclude| exclude[ray] != triangle as i32)
-            && self.mask.is_none_or(|mask| mask[triangle as usize])
-    }
 }
 
 /// The numbers below `count`, at most `size` at a time.
