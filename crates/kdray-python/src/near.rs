@@ -14,7 +14,7 @@ use crate::rays::blocks;
 use crate::run::Watch;
 
 /// Points that are in the core's form at a time.
-const BLOCK: usize = 1 << 16;
+const BLOCK: usize = 1 << 18;
 
 /// What is asked for points, and where the mesh stands.
 pub(crate) struct Points<'a> {

@@ -31,7 +31,8 @@ pub struct Device {
     pub(crate) queue: wgpu::Queue,
     failure: Failure,
     memory: Arc<MemoryUse>,
-    pub(crate) pipelines: Mutex<HashMap<&'static str, wgpu::ComputePipeline>>,
+    /// By name and text.
+    pub(crate) pipelines: Mutex<HashMap<(&'static str, usize), wgpu::ComputePipeline>>,
     /// What the host reads through, kept for the next time.
     staging: Mutex<Option<wgpu::Buffer>>,
     /// The parameters of the recording before, kept for the next one.

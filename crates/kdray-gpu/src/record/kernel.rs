@@ -50,7 +50,9 @@ impl Binding {
 impl Device {
     /// The kernel, compiled for this device the first time that it is asked for.
     pub(crate) fn pipeline(&self, kernel: &Kernel) -> Result<wgpu::ComputePipeline, GpuError> {
-        if let Some(pipeline) = lock(&self.pipelines).get(kernel.name) {
+        // Kernels of different crates may share a name, but not a text.
+        let key = (kernel.name, kernel.source.as_ptr().addr());
+        if let Some(pipeline) = lock(&self.pipelines).get(&key) {
             return Ok(pipeline.clone());
         }
         // The probes that find out the form of floats have none.
@@ -58,7 +60,7 @@ impl Device {
         let floats = if is_exact { self.floats()? } else { Floats::Soft };
         let source = wgsl::compose(kernel.source, floats);
         let pipeline = self.compile_source(kernel, &source)?;
-        lock(&self.pipelines).insert(kernel.name, pipeline.clone());
+        lock(&self.pipelines).insert(key, pipeline.clone());
         Ok(pipeline)
     }
 

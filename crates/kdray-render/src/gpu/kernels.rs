@@ -43,8 +43,8 @@ pub(super) static SHADE_PATH: Kernel = kernel!(
     [Uniform, Read, Read, Write, Write, Write, Write, Write, Write]
 );
 
-pub(super) static SETTLE: Kernel =
-    kernel!("settle", ["queue"], [Uniform, Read, Read, Write, Write]);
+pub(super) static SUNLIGHT: Kernel =
+    kernel!("sunlight", ["queue"], [Uniform, Read, Read, Write, Write]);
 
 pub(super) static ESCAPE: Kernel =
     kernel!("escape", ["sky", "ground", "queue"], [Uniform, Read, Read, Read, Write, Write]);
@@ -56,7 +56,7 @@ pub(super) static SAMPLED: Kernel = kernel!("sampled", ["sampler"], [Uniform, Wr
 
 /// Every kernel that pictures need.
 pub(super) const KERNELS: &[&Kernel] =
-    &[&CAMERA, &SURFACE, &SHADE_NORMALS, &SHADE_AO, &SHADE_PATH, &SETTLE, &ESCAPE, &ACCUMULATE];
+    &[&CAMERA, &SURFACE, &SHADE_NORMALS, &SHADE_AO, &SHADE_PATH, &SUNLIGHT, &ESCAPE, &ACCUMULATE];
 
 /// No counter.
 pub(super) const NONE: u32 = u32::MAX;

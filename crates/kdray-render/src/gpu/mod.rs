@@ -2,7 +2,7 @@
 //!
 //! Samples go in waves. Kernels pass them on: `camera` makes their rays, kdray-gpu's tracer finds what
 //! these hit, `surface` what is there, and `shade_normals`, `shade_ao` or `shade_path` what becomes of
-//! it: shadow rays, whose light `settle` adds, and reflected rays, which are packed for the next turn.
+//! it: shadow rays, whose light `sunlight` adds, and reflected rays, which are packed for the next turn.
 //! `escape` gives the last of these the light of the sky, and `accumulate` adds samples to the film,
 //! which stays on the device until all are there. Tone mapping, and smoothing noise away, are left to
 //! the CPU.

@@ -6,7 +6,7 @@ use kdray_gpu::{Device, Tracer};
 
 use super::RenderError;
 use super::kernels::{
-    ACCUMULATE, CAMERA, ESCAPE, Params, SETTLE, SHADE_AO, SHADE_NORMALS, SHADE_PATH, SURFACE,
+    ACCUMULATE, CAMERA, ESCAPE, Params, SHADE_AO, SHADE_NORMALS, SHADE_PATH, SUNLIGHT, SURFACE,
 };
 use super::looks::Looks;
 use super::room::{Length, Room, SEGMENT};
@@ -60,7 +60,7 @@ impl Wave<'_> {
         recording.clear(&room.counters);
         let buffers = [&room.points, &room.paths, &room.counters, &room.shadow_rays, &room.shadows];
         self.run(&mut recording, (&SHADE_AO, &all, 0), &buffers, moved(64, 144));
-        self.settle_shadows(&mut recording, 0);
+        self.add_sunlight(&mut recording, 0);
         Ok(recording.run()?)
     }
 
@@ -107,7 +107,7 @@ impl Wave<'_> {
             &to.ids,
         ];
         self.run(recording, (&SHADE_PATH, length, bounce), &buffers, moved(128, 148));
-        self.settle_shadows(recording, bounce % SEGMENT);
+        self.add_sunlight(recording, bounce % SEGMENT);
         let next = &room.lengths[(bounce % SEGMENT) as usize][0];
         recording.measure(&next.count);
         next.clone()
@@ -135,13 +135,13 @@ impl Wave<'_> {
     }
 
     /// Traces shadow rays and adds their light.
-    fn settle_shadows(&self, recording: &mut Recording, turn: u32) {
+    fn add_sunlight(&self, recording: &mut Recording, turn: u32) {
         let room = self.room;
         let length = &room.lengths[turn as usize][1];
         recording.measure(&length.count);
         self.tracer.record_any(recording, &length.of(&room.shadow_rays), &room.found);
         let buffers = [&room.found, &room.shadows, &room.paths, &room.counters];
-        self.run(recording, (&SETTLE, length, 0), &buffers, moved(40, 20));
+        self.run(recording, (&SUNLIGHT, length, 0), &buffers, moved(40, 20));
     }
 
     /// Adds the light of the sky to paths that nothing is in the way of.

@@ -6,7 +6,7 @@
 @group(0) @binding(4) var<storage, read_write> counters: array<atomic<u32>>;
 
 @compute @workgroup_size(256)
-fn settle(
+fn sunlight(
     @builtin(workgroup_id) group: vec3u,
     @builtin(num_workgroups) groups: vec3u,
     @builtin(local_invocation_index) local: u32,
