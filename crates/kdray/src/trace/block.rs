@@ -27,13 +27,13 @@ pub(super) struct Block {
 /// The lanes of a block that a ray may hit in the interval that was asked for.
 #[derive(Clone, Copy)]
 pub(super) struct Filtered {
-    maybe: u32,
+    pub(super) maybe: u32,
     /// Those of them that its line crosses for certain.
-    surely: u32,
+    pub(super) surely: u32,
     /// Those that are hit in the interval for certain.
-    inside: u32,
+    pub(super) inside: u32,
     /// No hit of a lane comes before.
-    earliest: Lanes,
+    pub(super) earliest: Lanes,
 }
 
 impl Filtered {

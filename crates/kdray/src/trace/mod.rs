@@ -33,10 +33,11 @@
 //! `collapse` lays the tree out in the nodes of eight boxes of `wide`; `prepare` makes of a ray what
 //! traversal needs; `traverse` visits the leaves along it from front to back, `walk`ing `step` by
 //! `step`, and `stream` does so for several rays at a time, some of them as a `packet`. `block` filters the triangles of a leaf
-//! eight at a time, and `simd` says with which instructions; `vector` is arithmetic on eight or sixteen
-//! numbers, and `sift` says by it which triangles may be hit. `intersect` says for one triangle what a
-//! hit is: it is the definition that everything else is tested against. `hits` keeps what the queries
-//! want of the hits. `leaves` is the same visit for whoever asks, in strict order.
+//! eight at a time, and `simd` says with which instructions, those of NEON in `neon`; `vector` is
+//! arithmetic on eight or sixteen numbers, and `sift` says by it which triangles may be hit.
+//! `intersect` says for one triangle what a hit is: it is the definition that everything else is
+//! tested against. `hits` keeps what the queries want of the hits. `leaves` is the same visit for
+//! whoever asks, in strict order.
 //! `near` visits the leaves around a point, for the queries of `proximity`: `tilt` has second boxes
 //! along the surface, `apart` says how far the triangles of a block are at least and at most, with the
 //! arithmetic of `eights`, and `closest` keeps those that may be the closest. `sign` tells inside from
@@ -52,6 +53,8 @@ mod hits;
 mod intersect;
 mod leaves;
 mod near;
+#[cfg(target_arch = "aarch64")]
+mod neon;
 #[cfg(test)]
 mod noise;
 mod only;
@@ -60,7 +63,7 @@ mod packet;
 mod pending;
 mod prepare;
 mod proximity;
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod sift;
 mod sign;
 mod simd;
@@ -70,7 +73,7 @@ mod stream;
 mod tilt;
 mod tracer;
 mod traverse;
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod vector;
 mod walk;
 mod wide;

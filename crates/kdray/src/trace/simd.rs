@@ -95,7 +95,14 @@ pub(super) enum Best {
     Avx2(HasAvx2),
     #[cfg(target_arch = "x86_64")]
     Avx512(HasAvx512),
+    #[cfg(target_arch = "aarch64")]
+    Neon(Neon),
 }
+
+/// For processors with NEON: exists only there.
+#[cfg(target_arch = "aarch64")]
+#[derive(Clone, Copy)]
+pub(super) struct Neon(());
 
 /// Exists only where the processor has AVX2 and what came with it.
 #[cfg(target_arch = "x86_64")]
@@ -134,6 +141,11 @@ impl Best {
                 Self::Avx2(proof)
             };
         }
+        // The compiler knows that it has, where it may use it anyway.
+        #[cfg(target_arch = "aarch64")]
+        if std::arch::is_aarch64_feature_detected!("neon") {
+            return Self::Neon(Neon(()));
+        }
         Self::Plain
     }
 
@@ -165,6 +177,8 @@ impl Best {
             Self::Avx2(_) => "avx2",
             #[cfg(target_arch = "x86_64")]
             Self::Avx512(_) => "avx512",
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon(_) => "neon",
         }
     }
 }
@@ -233,5 +247,70 @@ impl<V> Simd for Avx2<V> {
     fn filter(self, block: &Block, shear: &Self::Shear, interval: [f32; 2]) -> Filtered {
         // SAFETY: as above.
         unsafe { block.filter_avx2::<V>(shear, interval) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::noise::noise;
+
+    /// Filters blocks: what is said of a lane is true of its hit. Gives how many lanes may be hit,
+    /// and a hash of everything that was said.
+    fn filters_what_is_hit(simd: impl Simd) -> (u32, u32) {
+        let mut state = 5;
+        let (mut maybes, mut hash) = (0, 0_u32);
+        for round in 0..20_000 {
+            // Up to the ends of what a mesh has, and rays from beyond.
+            let size = [1.0, 1.0, 100.0, 4e9, 2e-10][round % 5];
+            let far = [1.0, 1.0, 1e3, 1e12, 1e27][round % 11 % 5];
+            let mut point = |size: f32| [(); 3].map(|()| size * (noise(&mut state) - 0.5));
+            let origin = point(far * size);
+            let corners = [(); 8].map(|()| [point(size), point(size), point(0.1 * size)]);
+            let block = Block::new(&[0, 1, 2, 3, 4, 5, 6, 7], true, |at| corners[at as usize]);
+            let direction = if round % 7 == 0 { [0.0, 1.0, 0.0] } else { point(1.0) };
+            let (t_min, t_max) = (size * noise(&mut state), 2.0 * size * noise(&mut state));
+            let ray = Ray { origin, direction, t_min, t_max };
+            let shear = simd.shear(&ray);
+            let said = simd.filter(&block, &shear, [t_min, t_max]);
+            for lane in 0..8 {
+                let [maybe, surely, inside] =
+                    [said.maybe, said.surely, said.inside].map(|bits| bits >> lane & 1 == 1);
+                let hit = block.hit(lane, false, shear.as_ref());
+                let is_inside = hit.is_some_and(|hit| t_min <= hit.t && hit.t <= t_max);
+                let case = format!("lane {lane}: {hit:?} of {ray:?} and {:?}", corners[lane]);
+                assert!(maybe || !is_inside, "{case}");
+                assert!(hit.is_some() || !(maybe && surely), "{case}");
+                assert!(is_inside || !(maybe && inside), "{case}");
+                assert!(
+                    !is_inside || said.earliest[lane] <= hit.map_or(0.0, |hit| hit.t),
+                    "{case}"
+                );
+                // Where no lane may be hit, nothing is said of when.
+                let early = if maybe { said.earliest[lane].to_bits() } else { 0 };
+                hash = hash.wrapping_mul(0x0100_0193) ^ early;
+            }
+            maybes += said.maybe.count_ones();
+            for bits in [said.maybe, said.surely, said.inside] {
+                hash = hash.wrapping_mul(0x0100_0193) ^ (bits & said.maybe);
+            }
+        }
+        (maybes, hash)
+    }
+
+    #[test]
+    fn filters_say_what_is_so_and_the_same_on_every_processor() {
+        filters_what_is_hit(Plain);
+        let said = match Best::detect() {
+            #[cfg(target_arch = "x86_64")]
+            Best::Avx2(proof) => filters_what_is_hit(Avx2::<()>::from(proof)),
+            #[cfg(target_arch = "x86_64")]
+            Best::Avx512(proof) => filters_what_is_hit(Avx2::<()>::from(proof.avx2())),
+            #[cfg(target_arch = "aarch64")]
+            Best::Neon(neon) => filters_what_is_hit(neon),
+            Best::Plain => return println!("this processor has no fast path: none was tested"),
+        };
+        // What AVX2 says.
+        assert_eq!(said, (29_663, 2_208_235_696));
     }
 }

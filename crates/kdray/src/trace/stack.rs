@@ -83,7 +83,7 @@ impl<const CAPACITY: usize> StackOf<CAPACITY> {
     }
 
     /// The subtree on top of a stack that is not empty.
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     #[inline(always)]
     pub(super) fn take(&mut self) -> Child {
         debug_assert!(self.height > 0, "there is one");

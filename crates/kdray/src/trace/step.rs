@@ -11,8 +11,8 @@ use crate::geometry::Ray;
 /// The children that a ray meets, and where it enters them.
 #[derive(Clone, Copy)]
 pub(super) struct Met {
-    mask: u32,
-    t_enter: [f32; 8],
+    pub(super) mask: u32,
+    pub(super) t_enter: [f32; 8],
 }
 
 /// The children that the ray meets in `t_min..=t_max`. Tests the boxes one after the other.
@@ -59,7 +59,12 @@ pub(super) fn push(wide: &Wide, octant: usize, met: &Met, stack: &mut Stack) {
 /// Of two children that were met, the one that the ray enters first; the other goes on the stack.
 /// It is the same by the order of the octant, but takes longer to find out.
 #[inline(always)]
-fn nearer_of_two(wide: &Wide, mask: u32, t_enter: &[f32; 8], stack: &mut Stack) -> Child {
+pub(super) fn nearer_of_two(
+    wide: &Wide,
+    mask: u32,
+    t_enter: &[f32; 8],
+    stack: &mut Stack,
+) -> Child {
     let [a, b] = [mask, mask & (mask - 1)].map(|mask| mask.trailing_zeros() as usize & 7);
     let (near, far) = if t_enter[b] < t_enter[a] { (b, a) } else { (a, b) };
     stack.push(wide.children[far], t_enter[far]);
@@ -263,11 +268,14 @@ static PLACES: [u32; 256] = {
     places
 };
 
-#[cfg(all(test, target_arch = "x86_64"))]
+#[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Aabb;
+    use crate::geometry::{Aabb, Ray};
     use crate::trace::noise::noise;
+    #[cfg(target_arch = "x86_64")]
+    use crate::trace::simd::Avx2;
+    use crate::trace::simd::{Best, Simd};
 
     fn random_wide(state: &mut u32) -> Wide {
         let mut wide = Wide::EMPTY;
@@ -293,12 +301,8 @@ mod tests {
         nearest.into_iter().chain(rest).collect()
     }
 
-    #[test]
-    fn avx2_steps_like_the_plain_step() {
-        if !std::arch::is_x86_feature_detected!("avx2") {
-            println!("this processor has no AVX2: its path was not tested");
-            return;
-        }
+    /// The steps of `simd` beside those of the definition.
+    fn steps_like_the_plain_step(simd: impl Simd) {
         let mut state = 7;
         let mut count = 0;
         for _ in 0..200_000 {
@@ -315,13 +319,9 @@ mod tests {
             let met = meet(&wide, &slabs, interval);
             let plain = nearest(&wide, slabs.octant(), &met, a);
             push(&wide, slabs.octant(), &met, b);
-            // SAFETY: the processor has AVX2.
-            let fast = unsafe {
-                let lanes = Lanes::new(&ray, 1.0);
-                let met = meet_avx2::<()>(&wide, &lanes, interval);
-                push_avx2::<()>(&wide, lanes.octant, &met, d);
-                nearest_avx2::<()>(&wide, lanes.octant, &met, c)
-            };
+            let lanes = simd.slabs(&ray, 1.0);
+            let fast = simd.nearest(&wide, &lanes, interval, c);
+            simd.push(&wide, &lanes, interval, d);
             let [a, b, c, d] = stacks;
             let (plain, fast) = (popped(plain, a), popped(fast, c));
             assert_eq!(plain, fast, "{wide:?} {slabs:?} {interval:?}");
@@ -329,5 +329,18 @@ mod tests {
             count += plain.len();
         }
         assert!(count > 40_000, "only {count} children were met");
+    }
+
+    #[test]
+    fn fast_steps_are_like_the_plain_step() {
+        match Best::detect() {
+            #[cfg(target_arch = "x86_64")]
+            Best::Avx2(proof) => steps_like_the_plain_step(Avx2::<()>::from(proof)),
+            #[cfg(target_arch = "x86_64")]
+            Best::Avx512(proof) => steps_like_the_plain_step(Avx2::<()>::from(proof.avx2())),
+            #[cfg(target_arch = "aarch64")]
+            Best::Neon(neon) => steps_like_the_plain_step(neon),
+            Best::Plain => println!("this processor has no fast path: none was tested"),
+        }
     }
 }

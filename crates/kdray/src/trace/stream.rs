@@ -9,6 +9,8 @@ use super::hits::Counted;
 use super::packet;
 #[cfg(target_arch = "x86_64")]
 use super::simd::Avx2;
+#[cfg(target_arch = "aarch64")]
+use super::simd::Best;
 use super::simd::{Plain, Simd};
 use super::stack::Stack;
 use super::traverse::{Trip, Visitor, traverse};
@@ -38,6 +40,10 @@ pub(super) fn trace<V: Visitor>(
     if let Some(proof) = trip.simd.avx2() {
         // SAFETY: the processor has AVX2.
         return unsafe { stream_avx2(proof.into(), trip, rays, begin, end) };
+    }
+    #[cfg(target_arch = "aarch64")]
+    if let Best::Neon(neon) = trip.simd {
+        return stream_with(neon, trip, rays, begin, end);
     }
     stream_with(Plain, trip, rays, begin, end);
 }

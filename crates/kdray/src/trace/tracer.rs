@@ -117,7 +117,8 @@ impl Tracer {
         self.all().count_hits(ray)
     }
 
-    /// The vector instructions that this processor lets queries use: `avx512`, `avx2` or `none`.
+    /// The vector instructions that this processor lets queries use: `avx512`, `avx2`,
+    /// `neon` or `none`.
     #[must_use]
     pub fn simd() -> &'static str {
         Best::detect().name()

@@ -46,7 +46,10 @@ pub(super) struct Trip {
     pub(super) layout: Layout,
     /// The largest coordinate of the scene.
     pub(super) reach: f32,
-    #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "one way only"))]
+    #[cfg_attr(
+        not(any(target_arch = "x86_64", target_arch = "aarch64")),
+        expect(dead_code, reason = "one way only")
+    )]
     pub(super) simd: Best,
 }
 
@@ -60,6 +63,10 @@ pub(super) fn traverse<V: Visitor>(trip: &Trip, ray: &Ray, visitor: &mut V) {
     if let Some(proof) = trip.simd.avx2() {
         // SAFETY: the processor has AVX2.
         return unsafe { traverse_avx2(proof.into(), trip, ray, visitor) };
+    }
+    #[cfg(target_arch = "aarch64")]
+    if let Best::Neon(neon) = trip.simd {
+        return traverse_with(neon, trip, ray, visitor);
     }
     traverse_plain(trip, ray, visitor);
 }

@@ -3,48 +3,64 @@
 //! A vector exists only where the processor has instructions for it: the first comes from a proof of
 //! that, all others from vectors. So arithmetic on vectors is safe.
 
+#[cfg(target_arch = "x86_64")]
 mod eight;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+#[cfg(target_arch = "x86_64")]
 mod sixteen;
 #[cfg(test)]
 mod tests;
 
 use std::ops::{Add, Div, Mul, Sub};
 
+#[cfg(target_arch = "x86_64")]
 use crate::geometry::Ray;
+#[cfg(target_arch = "x86_64")]
 pub(in crate::trace) use crate::trace::eights::by_axis;
 
+#[cfg(target_arch = "x86_64")]
 pub(in crate::trace) use eight::Eight;
+#[cfg(target_arch = "aarch64")]
+pub(in crate::trace) use neon::Eight;
+#[cfg(target_arch = "x86_64")]
 pub(in crate::trace) use sixteen::Sixteen;
 
 /// The most lanes that a vector has.
-pub(in crate::trace) const MOST: usize = 16;
+pub(in crate::trace) const MOST: usize = if cfg!(target_arch = "x86_64") { 16 } else { 8 };
 
 /// A number a lane; those beyond the lanes of a vector are of no consequence.
 #[repr(align(64))]
 #[derive(Clone, Copy)]
 pub(in crate::trace) struct Numbers(pub(in crate::trace) [f32; MOST]);
 
-/// Numbers in single precision.
+/// Numbers in single precision. What only packets need is where packets are.
 pub(in crate::trace) trait Vector: Arithmetic<Number = f32> {
+    #[cfg(any(test, target_arch = "x86_64"))]
     const LANES: usize;
     type Proof: Copy;
+    #[cfg(target_arch = "x86_64")]
     type Precise: Precise<Rounded = Self>;
 
     /// Rays, one a lane, as their eight numbers.
+    #[cfg(target_arch = "x86_64")]
     fn of_rays(proof: Self::Proof, rays: &[Ray]) -> [Self; 8];
     fn of_numbers(proof: Self::Proof, numbers: &Numbers) -> Self;
     fn numbers(self) -> Numbers;
     fn magnitude(self) -> Self;
     /// The magnitude of these with the signs of those.
+    #[cfg(target_arch = "x86_64")]
     fn with_signs_of(self, signs: Self) -> Self;
     /// `self * factor + term`, rounded once.
     fn fused(self, factor: Self, term: Self) -> Self;
     /// By lane, one of these where the mask is set and one of those where not.
     fn pick(mask: Self::Mask, these: Self, those: Self) -> Self;
+    #[cfg(target_arch = "x86_64")]
     fn precise(self) -> Self::Precise;
 }
 
 /// Numbers in double precision.
+#[cfg(target_arch = "x86_64")]
 pub(in crate::trace) trait Precise: Arithmetic<Number = f64> {
     type Rounded;
     fn rounded(self) -> Self::Rounded;

@@ -175,12 +175,11 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 pub(super) use avx2::detect;
 
-#[cfg(test)]
+#[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
     use super::super::event::Kind;
     use super::*;
 
-    #[cfg(target_arch = "x86_64")]
     #[test]
     fn events_pass_the_same_on_every_processor() {
         let Some(lanes) = detect() else { return };
