@@ -6,9 +6,6 @@ use super::stream::in_packets;
 use crate::geometry::{Aabb, Ray};
 use crate::winding::Winding;
 
-/// A direction that is not along anything that people model; any would do.
-pub(super) const OUTWARDS: [f32; 3] = [0.439_504_65, 0.617_598_6, 0.652_231_5];
-
 /// How inside is told from outside.
 #[derive(Clone, Copy, Default)]
 pub enum Sign<'a> {
@@ -45,16 +42,22 @@ impl Tracer {
         self.way_out(point).is_some_and(|ray| self.count_hits(&ray) % 2 == 1)
     }
 
-    /// A ray from a point to infinity, one of two whatever the point: the one that leaves the mesh
-    /// sooner. `None` for points beyond the bounds, which are outside.
+    /// A ray from a point to infinity along the shortest side of the bounds, to the nearer end: it meets
+    /// the fewest boxes. `None` for points beyond the bounds, which are outside.
     pub(super) fn way_out(&self, point: [f32; 3]) -> Option<Ray> {
         let Aabb { lower, upper } = self.bounds;
         let is_within = (0..3).all(|axis| lower[axis] <= point[axis] && point[axis] <= upper[axis]);
-        let beyond_middle = |axis: usize| {
-            OUTWARDS[axis] * ((point[axis] - lower[axis]) - (upper[axis] - point[axis]))
-        };
-        let sense = (beyond_middle(0) + beyond_middle(1) + beyond_middle(2)).signum();
-        is_within.then(|| Ray::new(point, OUTWARDS.map(|component| sense * component)))
+        let axis = self.shortest_side();
+        let is_below = point[axis] - lower[axis] < upper[axis] - point[axis];
+        let mut direction = [0.0; 3];
+        direction[axis] = if is_below { -1.0 } else { 1.0 };
+        is_within.then(|| Ray::new(point, direction))
+    }
+
+    /// The axis along which the bounds are shortest.
+    pub(super) fn shortest_side(&self) -> usize {
+        let [x, y, z] = self.bounds.extent();
+        if x <= y && x <= z { 0 } else { 1 + usize::from(z < y) }
     }
 
     /// Writes to `inside[i]` whether `points[i]` is [inside](Tracer::contains). Points whose ways out
@@ -63,7 +66,7 @@ impl Tracer {
         inside.fill(false);
         let ways: Vec<Option<Ray>> = points.iter().map(|point| self.way_out(*point)).collect();
         // One that goes along with the others and sees nothing.
-        let nowhere = ways.iter().flatten().next().copied().unwrap_or(Ray::new([0.0; 3], OUTWARDS));
+        let nowhere = ways.iter().flatten().next().copied().unwrap_or(Ray::new([0.0; 3], [1.0; 3]));
         let rays: Vec<Ray> = ways.iter().map(|way| way.unwrap_or(nowhere)).collect();
         let begin = |index: usize, ray: &Ray| {
             (ways[index].is_some() && ray.is_valid()).then(|| Crossings::new(ray, |_| true))

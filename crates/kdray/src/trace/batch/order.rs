@@ -2,7 +2,6 @@
 
 use super::Batch;
 use crate::geometry::{Aabb, Ray};
-use crate::trace::sign::OUTWARDS;
 
 impl Batch<'_> {
     /// Nearby points have similar keys.
@@ -21,13 +20,11 @@ impl Batch<'_> {
     pub(super) fn key_across(&self, point: &[f32; 3]) -> u32 {
         let Some(Ray { direction, .. }) = self.tracer.way_out(*point) else { return u32::MAX };
         let Aabb { lower, upper } = self.tracer.bounds;
-        let size: f32 = (0..3).map(|axis| upper[axis] - lower[axis]).sum();
-        let [x, y, z] = [0, 1, 2].map(|axis| (point[axis] - lower[axis]) / size);
-        // Two coordinates that do not change along the way.
-        let [a, b, c] = OUTWARDS;
-        let across = [a * y - b * x, c * (a * x + b * y) - (a * a + b * b) * z];
-        let [u, v] = across.map(|v| cell(0.5 + 0.5 * v, 32_768.0));
-        (u32::from(direction[0] < 0.0) << 30) | by_twos([u, v])
+        let along = self.tracer.shortest_side();
+        let across = [(along + 1) % 3, (along + 2) % 3];
+        let cells = across
+            .map(|axis| cell((point[axis] - lower[axis]) / (upper[axis] - lower[axis]), 32_768.0));
+        (u32::from(direction[along] < 0.0) << 30) | by_twos(cells)
     }
 
     /// Where in the box of the mesh, of so many cells along each axis.
