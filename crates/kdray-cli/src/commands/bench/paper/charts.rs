@@ -200,13 +200,15 @@ fn by_scene(
     draw: impl FnOnce(&mut ByScene<'_, '_>) -> anyhow::Result<()>,
 ) -> anyhow::Result<String> {
     let last = scenes.len().saturating_sub(1);
-    svg(60 + ROW * scenes.len() as u32, |area| {
+    // An axis of one row would have no height.
+    let rows = scenes.len().max(2);
+    svg(60 + ROW * rows as u32, |area| {
         let mut chart = ChartBuilder::on(area)
             .margin(8)
             .margin_right(20)
             .x_label_area_size(40)
             .y_label_area_size(90)
-            .build_cartesian_2d(0.0..most, (0..last).into_segmented())?;
+            .build_cartesian_2d(0.0..most, (0..rows - 1).into_segmented())?;
         let scene = |row: &SegmentValue<usize>| match row {
             SegmentValue::CenterOf(row) => {
                 last.checked_sub(*row).and_then(|scene| scenes.get(scene)).copied().unwrap_or("")
@@ -217,7 +219,7 @@ fn by_scene(
         mesh.disable_y_mesh().x_desc(x).light_line_style(TRANSPARENT);
         mesh.label_style(("sans-serif", 14)).x_label_formatter(&|x| short(*x));
         let name = |row: &SegmentValue<usize>| scene(row).to_owned();
-        mesh.y_labels(scenes.len().max(1)).y_label_formatter(&name).draw()?;
+        mesh.y_labels(rows).y_label_formatter(&name).draw()?;
         draw(&mut chart)
     })
 }
@@ -259,6 +261,18 @@ mod tests {
         assert_eq!(filled(bars("share", &["one", "two"], &parts).expect("drawn")), 4);
         let chart = dots("ratio", &["one", "two"], &parts).expect("drawn");
         assert!(chart.contains("one") && chart.contains("two"));
+    }
+
+    #[test]
+    fn bars_of_one_scene_and_of_two_are_high_and_wide() {
+        for scenes in [&["one"][..], &["one", "two"]] {
+            let points: Vec<[f64; 2]> = (0..scenes.len()).map(|i| [i as f64, 1.0]).collect();
+            let chart = bars("percent", scenes, &[series(&points)]).expect("drawn");
+            let rectangles: Vec<&str> = chart.split("<rect").skip(1).collect();
+            let bars = rectangles.iter().filter(|it| it.contains(r##"fill="#332288""##));
+            let is_seen = |bar: &&&str| !bar.contains("=\"-") && !bar.contains("height=\"0\"");
+            assert_eq!(bars.filter(is_seen).count(), scenes.len(), "{chart}");
+        }
     }
 
     #[test]
