@@ -97,7 +97,7 @@ impl Asked<'_, '_> {
     }
 
     /// Rays that are worth being brought in order together, if that is worth it. Only for rays
-    /// that see everything: the others have a triangle each to leave out.
+    /// that see everything.
     fn window(&self) -> Option<usize> {
         let sees_all = self.rays.mask.is_none() && self.rays.except(0..0).is_none();
         let pays = sees_all && order::pays(self.rays, self.scene.tree.bounds());

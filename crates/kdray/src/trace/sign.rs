@@ -34,7 +34,8 @@ impl Sign<'_> {
 
 impl Tracer {
     /// Whether `point` is inside: whether a line from it to infinity crosses the surface an odd
-    /// number of times. Right for every closed mesh, because every crossing counts exactly once;
+    /// number of times. The line goes along the shortest side of the bounds, to the nearer end; points
+    /// beyond the bounds are outside. Right for every closed mesh, because every crossing counts exactly once;
     /// for a mesh that is not closed there is no right answer, and points on the surface may get
     /// either.
     #[must_use]

@@ -11,8 +11,8 @@ pub struct BatchOptions<'a> {
     /// Threads that ask; 0 for those of the current `rayon` pool. The answers are the same.
     pub threads: usize,
     /// Whether queries near each other are asked one after the other, whatever their order. The
-    /// answers are the same, and where they were. It takes sorting, about 0.05 µs a query. Points
-    /// are always asked so where it pays, for closest points and parity, and lists never.
+    /// answers are the same, and where they were. It takes sorting. Closest points, and inside or
+    /// outside by parity, are always asked in an order of their own, and lists never.
     pub reorder: bool,
     /// By triangle, whether rays see it; `None` for all.
     pub visible: Option<&'a [bool]>,
