@@ -9,7 +9,7 @@ mod boxes;
 mod triangles;
 
 use super::block::Block;
-use super::prepare::{Shear, greater, lesser};
+use super::prepare::{Shear, lesser};
 use super::simd::{Avx2, HasAvx2, HasAvx512};
 use super::stack::Stack;
 use super::traverse::{ENOUGH, Trip, Visitor};
@@ -18,7 +18,7 @@ use super::walk::visit_below;
 use super::wide::Child;
 use crate::geometry::{Hit, Ray};
 use boxes::Boxes;
-use triangles::Triangles;
+use triangles::{Located, Triangles};
 
 /// Below so many rays each goes on alone.
 const FEW: u32 = 3;
@@ -28,8 +28,8 @@ struct Packet<'a, V, L: Vector> {
     simd: Avx2<V>,
     trip: &'a Trip,
     rays: &'a [Ray],
+    lanes: &'a Rays<L>,
     boxes: &'a Boxes<L>,
-    triangles: &'a Triangles<L>,
     proof: L::Proof,
     until: Numbers,
 }
@@ -66,13 +66,12 @@ fn traverse<V: Visitor, L: Vector>(
 ) -> bool {
     let lanes = Rays::<L>::new(proof, rays);
     let Some(boxes) = Boxes::new(&lanes, trip.reach, avx2) else { return false };
-    let triangles = Triangles::new(&lanes, Shear::axes(&rays[0].direction));
     let mut until = lanes.t_max.numbers();
     for (until, visitor) in until.0.iter_mut().zip(visitors.iter()) {
         *until = if visitor.is_some() { *until } else { ENOUGH };
     }
-    let (boxes, triangles) = (&boxes, &triangles);
-    let mut packet = Packet { simd: avx2.into(), trip, rays, boxes, triangles, proof, until };
+    let (lanes, boxes) = (&lanes, &boxes);
+    let mut packet = Packet { simd: avx2.into(), trip, rays, lanes, boxes, proof, until };
     packet.traverse(visitors);
     true
 }
@@ -93,28 +92,21 @@ impl<L: Vector> Rays<L> {
     }
 }
 
-#[inline(always)]
-fn least<L: Vector>(lanes: L) -> f32 {
-    lanes.numbers().0[..L::LANES].iter().copied().fold(f32::INFINITY, lesser)
-}
-
-#[inline(always)]
-fn greatest<L: Vector>(lanes: L) -> f32 {
-    lanes.numbers().0[..L::LANES].iter().copied().fold(f32::NEG_INFINITY, greater)
-}
-
 impl<V: Visitor, L: Vector> Packet<'_, V, L> {
     #[inline(always)]
     fn traverse(&mut self, visitors: &mut [Option<V>]) {
         let wides = &self.trip.layout.wides[..];
         let (mut stack, mut child, mut mask) = (Stack::new(), Child(0), (1_u32 << L::LANES) - 1);
         let mut last = self.last();
+        // Made when the first leaf is reached: many packets reach none.
+        let mut triangles = None;
         loop {
             if mask.count_ones() < FEW {
                 self.go_on_alone(child, mask, visitors);
                 last = self.last();
             } else if let Some(first) = child.block() {
-                self.test_leaf(&self.trip.layout.blocks[first..], mask, visitors);
+                let triangles = triangles.get_or_insert_with(|| self.triangles());
+                self.test_leaf(&self.trip.layout.blocks[first..], triangles, mask, visitors);
                 last = self.last();
             } else {
                 // SAFETY: there is a vector, so the processor has AVX2.
@@ -135,7 +127,12 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
     /// Up to where some ray has more to see.
     #[inline(always)]
     fn last(&self) -> f32 {
-        greatest(L::of_numbers(self.proof, &self.until))
+        L::of_numbers(self.proof, &self.until).greatest()
+    }
+
+    #[inline(always)]
+    fn triangles(&self) -> Triangles<L> {
+        Triangles::new(self.lanes, Shear::axes(&self.rays[0].direction))
     }
 
     /// Shows what is below `child` to the rays of `mask`, one after the other.
@@ -152,10 +149,16 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
 
     /// Shows the triangles of a leaf to the rays of `mask`.
     #[inline(always)]
-    fn test_leaf(&mut self, blocks: &[Block], mask: u32, visitors: &mut [Option<V>]) {
+    fn test_leaf(
+        &mut self,
+        blocks: &[Block],
+        triangles: &Triangles<L>,
+        mask: u32,
+        visitors: &mut [Option<V>],
+    ) {
         for block in blocks {
             for place in block.places() {
-                self.test_triangle(block, place, mask, visitors);
+                self.test_triangle((block, place), triangles, mask, visitors);
             }
             if block.is_last() {
                 break;
@@ -166,13 +169,13 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
     #[inline(always)]
     fn test_triangle(
         &mut self,
-        block: &Block,
-        place: usize,
+        (block, place): (&Block, usize),
+        triangles: &Triangles<L>,
         mask: u32,
         visitors: &mut [Option<V>],
     ) {
         let until = L::of_numbers(self.proof, &self.until);
-        let sifted = self.triangles.sift(block, place, until);
+        let sifted = triangles.sift(block, place, until);
         let index = block.index(place);
         if V::ASKS_WHETHER {
             for lane in lanes(sifted.inside & mask) {
@@ -186,7 +189,8 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
         };
         let maybe = lanes(sifted.maybe & mask).filter(news).fold(0, |all, lane| all | 1 << lane);
         if maybe != 0 {
-            self.show_hits(block, place, (maybe, sifted.surely), visitors);
+            let located = triangles.locate(block, place);
+            self.show_hits((block, place), &located, (maybe, sifted.surely), visitors);
         }
     }
 
@@ -194,12 +198,11 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
     #[inline(always)]
     fn show_hits(
         &mut self,
-        block: &Block,
-        place: usize,
+        (block, place): (&Block, usize),
+        located: &Located,
         (maybe, surely): (u32, u32),
         visitors: &mut [Option<V>],
     ) {
-        let located = self.triangles.locate(block, place);
         for lane in lanes(maybe) {
             let Some(visitor) = &mut visitors[lane] else { continue };
             let surely = surely >> lane & 1 == 1;
@@ -227,49 +230,4 @@ fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::Mesh;
-    use crate::trace::hits::Closest;
-    use crate::trace::prepare::reach;
-    use crate::trace::simd::Best;
-    use crate::trace::wide::Layout;
-    use crate::{BuildOptions, Tree};
-
-    /// Whether rays along these directions, all that a packet has, were a packet, and their hits.
-    fn traced(trip: &Trip, direction: impl Fn(usize) -> [f32; 3]) -> Option<Vec<Option<Hit>>> {
-        let count = if trip.simd.avx512().is_some() { 16 } else { 8 };
-        let rays = (0..count).map(|index| Ray::new([0.5, 0.5, 5.0], direction(index)));
-        let rays: Vec<Ray> = rays.collect();
-        let visitor = |ray: &Ray| Some(Closest::new(ray, |_| true));
-        let mut visitors: Vec<_> = rays.iter().map(visitor).collect();
-        visitors[3] = None;
-        let together = match trip.simd {
-            Best::Plain => panic!("asked for AVX2 before"),
-            // SAFETY: the processor has it.
-            Best::Avx2(proof) => unsafe { traverse_avx2(proof, trip, &rays, &mut visitors) },
-            // SAFETY: as above.
-            Best::Avx512(proof) => unsafe { traverse_avx512(proof, trip, &rays, &mut visitors) },
-        };
-        together.then(|| visitors.into_iter().map(|visitor| visitor?.hit).collect())
-    }
-
-    #[test]
-    fn rays_go_together_where_their_largest_axes_and_signs_agree() {
-        if Best::detect().avx2().is_none() {
-            println!("this processor has no AVX2: packets were not tested");
-            return;
-        }
-        let square = [[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]];
-        let mesh = Mesh::new(&square, &[[0, 1, 2]]).expect("sound");
-        let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
-        let (layout, reach) = (Layout::new(&mesh, &tree), reach(&tree.bounds()));
-        let trip = Trip { layout, reach, simd: Best::detect() };
-        let fan = |spread: f32| move |index: usize| [spread * (index as f32 + 0.5), 0.1, -1.0];
-        let hits = traced(&trip, fan(0.01)).expect("these go together");
-        assert!((0..hits.len()).all(|lane| hits[lane].is_some() == (lane != 3)));
-        assert!(traced(&trip, fan(0.2)).is_none(), "the last ones are largest in x");
-        let torn = |index: usize| [0.01, if index == 5 { -0.1 } else { 0.1 }, -1.0];
-        assert!(traced(&trip, torn).is_none(), "one goes down in y");
-    }
-}
+mod tests;

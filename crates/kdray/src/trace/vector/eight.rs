@@ -232,6 +232,23 @@ impl Vector for Eight {
     }
 
     #[inline(always)]
+    fn least(self) -> f32 {
+        // SAFETY: as above.
+        unsafe {
+            let high = _mm256_extractf128_ps::<1>(self.0);
+            let four = _mm_min_ps(_mm256_castps256_ps128(self.0), high);
+            let two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+            _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)))
+        }
+    }
+
+    #[inline(always)]
+    fn greatest(self) -> f32 {
+        // SAFETY: as above.
+        -Self(unsafe { _mm256_xor_ps(_mm256_set1_ps(-0.0), self.0) }).least()
+    }
+
+    #[inline(always)]
     fn fused(self, factor: Self, term: Self) -> Self {
         // SAFETY: as above.
         Self(unsafe { _mm256_fmadd_ps(self.0, factor.0, term.0) })

@@ -51,6 +51,12 @@ pub(in crate::trace) trait Vector: Arithmetic<Number = f32> {
     /// The magnitude of these with the signs of those.
     #[cfg(target_arch = "x86_64")]
     fn with_signs_of(self, signs: Self) -> Self;
+    /// The least number; none is NaN.
+    #[cfg(target_arch = "x86_64")]
+    fn least(self) -> f32;
+    /// The greatest number; none is NaN.
+    #[cfg(target_arch = "x86_64")]
+    fn greatest(self) -> f32;
     /// `self * factor + term`, rounded once.
     fn fused(self, factor: Self, term: Self) -> Self;
     /// By lane, one of these where the mask is set and one of those where not.
