@@ -3,9 +3,11 @@
 use super::intersect::{Crossing, crossing, locate};
 use super::prepare::Shear;
 #[cfg(target_arch = "x86_64")]
-use super::sift::{Sifted, sheared, sift};
+use super::sift::{Sifted, sheared, sift, signs};
 #[cfg(target_arch = "x86_64")]
-use super::vector::{Arithmetic, Eight};
+use super::traverse::Visitor;
+#[cfg(target_arch = "x86_64")]
+use super::vector::{Arithmetic, Eight, Mask};
 use crate::geometry::Hit;
 #[cfg(target_arch = "x86_64")]
 use crate::geometry::Ray;
@@ -169,15 +171,12 @@ impl Block {
         Filtered { maybe: (1 << LANES) - 1, surely: 0, inside: 0, earliest }
     }
 
-    /// The lanes whose edge functions do not differ in sign, with the arithmetic of [`crossing`],
-    /// but for those that are hit before or after the interval for certain. `V` is the visitor of
-    /// the traversal, whose own it is.
+    /// The corners in ray space.
     #[cfg(target_arch = "x86_64")]
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    #[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
-    pub(super) fn filter_avx2<V>(&self, ray: &RayLanes, [t_min, t_max]: [f32; 2]) -> Filtered {
-        use std::arch::x86_64::{_mm256_load_ps, _mm256_storeu_ps};
+    fn sheared_avx2(&self, ray: &RayLanes) -> [[Eight; 3]; 3] {
+        use std::arch::x86_64::_mm256_load_ps;
         let mut corners = [ray.origin; 3];
         for corner in 0..3 {
             for (place, axis) in ray.shear.axes.into_iter().enumerate() {
@@ -188,13 +187,46 @@ impl Block {
             }
             corners[corner] = sheared(corners[corner], &ray.origin, &ray.slope);
         }
+        corners
+    }
+
+    /// The lanes whose edge functions do not differ in sign, with the arithmetic of [`crossing`],
+    /// but for those that are hit before or after the interval for certain. `V` is the visitor of
+    /// the traversal, whose own it is.
+    #[cfg(target_arch = "x86_64")]
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    #[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
+    pub(super) fn filter_avx2<V>(&self, ray: &RayLanes, [t_min, t_max]: [f32; 2]) -> Filtered {
+        let corners = self.sheared_avx2(ray);
         let all = |number: f32| ray.origin[0].all(number);
         let sifted = sift(&corners, all(ray.t_per_z), [all(t_min), all(t_max)]);
         let mut earliest = [0.0; LANES];
         // SAFETY: eight lanes fit.
-        unsafe { _mm256_storeu_ps(earliest.as_mut_ptr(), sifted.early.0) };
+        unsafe { std::arch::x86_64::_mm256_storeu_ps(earliest.as_mut_ptr(), sifted.early.0) };
         let Sifted { maybe, surely, inside, .. } = sifted;
         Filtered { maybe, surely, inside, earliest }
+    }
+
+    /// Of the lanes whose edge functions do not differ in sign: all, those whose are not zero, and, if
+    /// that is asked for, those that are hit in the interval for certain.
+    #[cfg(target_arch = "x86_64")]
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    pub(super) fn crossed_avx2<V: Visitor>(
+        &self,
+        ray: &RayLanes,
+        [t_min, t_max]: [f32; 2],
+    ) -> (u32, u32, u32) {
+        let corners = self.sheared_avx2(ray);
+        if V::ASKS_WHETHER {
+            let all = |number: f32| ray.origin[0].all(number);
+            let sifted = sift(&corners, all(ray.t_per_z), [all(t_min), all(t_max)]);
+            (sifted.maybe, sifted.surely, sifted.inside)
+        } else {
+            let (_, maybe, surely) = signs(&corners);
+            (maybe.bits(), surely.bits(), 0)
+        }
     }
 
     /// The index of the triangle in a lane.

@@ -9,7 +9,8 @@ use super::prepare::{Slabs, greater, lesser};
 use super::wide::Wide;
 use crate::geometry::Ray;
 
-/// A leaf that a ray passes through.
+/// A leaf that a ray passes through, or a part of it: a leaf of more than eight triangles comes as
+/// parts that lie apart, each with its own interval, if that keeps rays away from some of them.
 #[derive(Clone, Copy)]
 pub struct Leaf<'a> {
     /// Where the ray enters it; no later leaf is entered before.
@@ -20,10 +21,9 @@ pub struct Leaf<'a> {
 }
 
 impl Leaf<'_> {
-    /// The triangles that have a part in the leaf, ascending.
+    /// The triangles that have a part in the leaf, each once.
     pub fn triangles(&self) -> impl Iterator<Item = u32> + '_ {
-        let last = self.blocks.iter().position(Block::is_last).unwrap_or(0);
-        self.blocks[..=last].iter().flat_map(Block::triangles)
+        self.blocks.iter().flat_map(Block::triangles)
     }
 }
 
@@ -74,7 +74,7 @@ impl Tracer {
                 push_met(&self.trip.layout.wides[child.0 as usize], &slabs, ray, &mut pending);
                 continue;
             };
-            let blocks = &self.trip.layout.blocks[first..];
+            let blocks = self.trip.layout.blocks_of(child, first);
             if visit(Leaf { t_min: near, t_max: far, blocks }).is_break() {
                 return;
             }

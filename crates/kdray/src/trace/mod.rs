@@ -76,6 +76,8 @@ mod traverse;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod vector;
 mod walk;
+#[cfg(target_arch = "x86_64")]
+mod wave;
 mod wide;
 
 pub use batch::{Batch, BatchError, BatchOptions, Lists};

@@ -33,7 +33,7 @@ pub(super) fn blocks_of(blocks: &[Block], leaf: Child) -> impl Iterator<Item = &
     let mut is_done = false;
     std::iter::from_fn(move || {
         let block = if is_done { None } else { rest.next() }?;
-        is_done = block.is_last();
+        is_done = block.is_last() || leaf.is_one();
         Some(block)
     })
 }

@@ -35,21 +35,27 @@ pub(super) fn sift<V: Vector>(
     t_per_z: V,
     [t_min, t_max]: [V; 2],
 ) -> Sifted<V> {
-    let [a, b, c] = *corners;
-    let edges = [edge(c, b), edge(a, c), edge(b, a)];
-    let lowest = edges[0].min(edges[1]).min(edges[2]);
-    let highest = edges[0].max(edges[1]).max(edges[2]);
-    let zero = t_per_z.all(0.0);
-    let maybe = zero.is_at_most(lowest).or(highest.is_at_most(zero));
+    let (edges, maybe, surely) = signs(corners);
     if maybe.bits() == 0 {
-        return Sifted { maybe: 0, surely: 0, inside: 0, early: zero };
+        return Sifted { maybe: 0, surely: 0, inside: 0, early: t_per_z };
     }
-    let surely = zero.is_less(lowest).or(highest.is_less(zero));
     let (early, late) = times(corners, &edges, t_per_z);
     let outside = late.is_less(t_min).or(t_max.is_less(early));
     let inside = t_min.is_at_most(early).and(late.is_at_most(t_max)).and(surely);
     let maybe = maybe.and_not(outside).bits();
     Sifted { maybe, surely: surely.bits(), inside: inside.bits(), early }
+}
+
+/// Edge functions, the lanes where they do not differ in sign, and those of them where none is zero.
+#[inline(always)]
+pub(super) fn signs<V: Vector>(corners: &[[V; 3]; 3]) -> ([V; 3], V::Mask, V::Mask) {
+    let [a, b, c] = *corners;
+    let edges = [edge(c, b), edge(a, c), edge(b, a)];
+    let lowest = edges[0].min(edges[1]).min(edges[2]);
+    let highest = edges[0].max(edges[1]).max(edges[2]);
+    let zero = lowest.all(0.0);
+    let maybe = zero.is_at_most(lowest).or(highest.is_at_most(zero));
+    (edges, maybe, zero.is_less(lowest).or(highest.is_less(zero)))
 }
 
 /// Between which `t` the line of a ray crosses triangles, given their corners in ray space and

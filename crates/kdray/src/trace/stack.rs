@@ -7,11 +7,11 @@ use crate::build::MAX_DEPTH;
 
 /// Every step takes one visit and puts back at most eight, and goes down a level at least. The
 /// last eight places are never on the stack: some write eight whatever they push.
-const CAPACITY: usize = 7 * (MAX_DEPTH as usize + 1) + 16;
+const CAPACITY: usize = 7 * (MAX_DEPTH as usize + 2) + 16;
 
 /// Room for a traversal that takes two visits a step, of nodes in the order of their levels: then a
 /// level has at most sixteen, and two of them are gone before there is another below it.
-pub(super) const CAPACITY_OF_TWO: usize = 14 * (MAX_DEPTH as usize + 1) + 32;
+pub(super) const CAPACITY_OF_TWO: usize = 14 * (MAX_DEPTH as usize + 2) + 32;
 
 pub(super) type Stack = StackOf<CAPACITY>;
 

@@ -1,8 +1,9 @@
-//! Several rays at a time: in packets, or each a step in turn.
+//! Several rays at a time: in packets, each a step in turn, or as a wave.
 //!
 //! A ray waits at almost every step, for memory and for the decision where to go: what it reads next
 //! depends on what it read last. Rays that go the same way wait together, as a packet. Where they
-//! go their own ways, the others are served while one waits.
+//! go their own ways, the others are served while one waits. Where all hits are wanted, in whatever
+//! order, nothing needs to wait.
 
 use super::hits::Counted;
 #[cfg(target_arch = "x86_64")]
@@ -15,6 +16,8 @@ use super::simd::{Plain, Simd};
 use super::stack::Stack;
 use super::traverse::{Trip, Visitor, traverse};
 use super::walk::Walk;
+#[cfg(target_arch = "x86_64")]
+use super::wave;
 use super::wide::Child;
 use crate::geometry::Ray;
 
@@ -30,7 +33,7 @@ pub(super) fn trace<V: Visitor>(
     begin: impl FnMut(usize, &Ray) -> Option<V>,
     end: impl FnMut(usize, V),
 ) {
-    if go_the_same_way(rays) && !start_apart(trip, rays) {
+    if go_together(trip, rays) {
         return in_packets(trip, rays, begin, end);
     }
     if !is_worth_turns(trip, rays) {
@@ -46,6 +49,23 @@ pub(super) fn trace<V: Visitor>(
         return stream_with(neon, trip, rays, begin, end);
     }
     stream_with(Plain, trip, rays, begin, end);
+}
+
+/// As [`trace`], for visitors that want all hits, in whatever order.
+pub(super) fn trace_all<V: Visitor>(
+    trip: &Trip,
+    rays: &[Ray],
+    begin: impl FnMut(usize, &Ray) -> Option<V>,
+    end: impl FnMut(usize, V),
+) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(proof) = trip.simd.avx2()
+        && !go_together(trip, rays)
+    {
+        // SAFETY: the processor has AVX2.
+        return unsafe { wave::trace_avx2(proof, trip, rays, begin, end) };
+    }
+    trace(trip, rays, begin, end);
 }
 
 /// The most rays of a packet.
@@ -137,6 +157,11 @@ fn is_worth_turns(trip: &Trip, rays: &[Ray]) -> bool {
     };
     let (count, sum) = sample.fold((0, 0), |(count, sum), ray| (count + 1, sum + steps(ray)));
     sum >= LONG * count
+}
+
+/// Whether most rays are beside the one before, all the way.
+fn go_together(trip: &Trip, rays: &[Ray]) -> bool {
+    go_the_same_way(rays) && !start_apart(trip, rays)
 }
 
 /// Whether most rays start far from the one before.

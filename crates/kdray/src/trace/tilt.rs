@@ -90,6 +90,9 @@ fn tilt(layout: &Layout, child: Child, start: usize, tilts: &mut [Tilt]) -> usiz
         return ends[8];
     };
     debug_assert_eq!(first, start, "blocks are in depth-first order");
+    if child.is_one() {
+        return first + 1;
+    }
     let last = layout.blocks[first..].iter().position(Block::is_last);
     first + last.expect("leaves end") + 1
 }
@@ -223,11 +226,10 @@ mod tests {
                 let squared = tilt.squared(&point.map(|number| Array([number; 8]))).0;
                 for place in 0..8 {
                     let Some(first) = wide.children[place].block() else { continue };
-                    let last =
-                        first + layout.blocks[first..].iter().position(Block::is_last).unwrap();
+                    let blocks = layout.blocks_of(wide.children[place], first);
                     let of =
                         |block: &Block| block.places().map(|lane| block.triangle(lane).1).collect();
-                    let corners = layout.blocks[first..=last].iter().flat_map::<Vec<_>, _>(of);
+                    let corners = blocks.iter().flat_map::<Vec<_>, _>(of);
                     let distances =
                         corners.map(|it| nearest_on_triangle(*point, &it).squared_distance);
                     let nearest = distances.fold(f64::INFINITY, f64::min);

@@ -128,7 +128,7 @@ impl Tracer {
     #[must_use]
     pub fn size_bytes(&self) -> usize {
         let tilts = self.tilts.get().map_or(0, |tilts| size_of_val(&tilts[..]));
-        size_of_val(&self.trip.layout.wides[..]) + size_of_val(&self.trip.layout.blocks[..]) + tilts
+        self.trip.layout.size_bytes() + tilts
     }
 
     /// What queries of points need besides.

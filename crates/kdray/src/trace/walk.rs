@@ -27,7 +27,7 @@ fn visit<S: Simd>(
         let shear = shear.get_or_insert_with(|| simd.shear(ray));
         // SAFETY: children of a layout are in it.
         let blocks = unsafe { layout.blocks.get_unchecked(first..) };
-        *until = test_leaf(simd, blocks, shear, interval, visitor);
+        *until = test_leaf(simd, (blocks, child.is_one()), shear, interval, visitor);
         if *until == ENOUGH { None } else { stack.pop(*until) }
     } else {
         visitor.step();
@@ -114,7 +114,8 @@ impl<'a, S: Simd> Walk<'a, S> {
         let first = child.block().unwrap_or(0);
         // SAFETY: as above.
         let blocks = unsafe { layout.blocks.get_unchecked(first..) };
-        self.until = test_leaf(self.simd, blocks, shear, [self.ray.t_min, self.until], visitor);
+        let (leaf, interval) = ((blocks, child.is_one()), [self.ray.t_min, self.until]);
+        self.until = test_leaf(self.simd, leaf, shear, interval, visitor);
         self.next(layout)
     }
 
@@ -147,7 +148,7 @@ fn prefetch(layout: &Layout, child: Child) {
 #[inline(always)]
 fn test_leaf<S: Simd, V: Visitor>(
     simd: S,
-    blocks: &[Block],
+    (blocks, is_one): (&[Block], bool),
     shear: &S::Shear,
     [t_min, mut until]: [f32; 2],
     visitor: &mut V,
@@ -175,7 +176,7 @@ fn test_leaf<S: Simd, V: Visitor>(
                 return ENOUGH;
             }
         }
-        if block.is_last() {
+        if is_one || block.is_last() {
             break;
         }
     }

@@ -21,13 +21,14 @@ pub(super) struct Wide {
     pub(super) order: [u32; 8],
 }
 
-/// What is in a box: another wide node, or the first of a leaf's blocks.
+/// What is in a box: another wide node, a block of a leaf, or all of them from the first.
 #[repr(transparent)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Child(pub(super) u32);
 
 impl Child {
     const LEAF: u32 = 1 << 31;
+    const ONE: u32 = 1 << 30;
 
     /// Nothing: a leaf that no layout has.
     pub(super) const NONE: Self = Self(u32::MAX);
@@ -37,10 +38,21 @@ impl Child {
         Self(first as u32 | Self::LEAF)
     }
 
+    /// One block of a leaf.
+    pub(super) fn one(block: usize) -> Self {
+        Self(block as u32 | Self::LEAF | Self::ONE)
+    }
+
     /// The first block of a leaf, or `None` for a wide node.
     #[inline(always)]
     pub(super) fn block(self) -> Option<usize> {
-        (self.0 & Self::LEAF != 0).then_some((self.0 & !Self::LEAF) as usize)
+        (self.0 & Self::LEAF != 0).then_some((self.0 & !(Self::LEAF | Self::ONE)) as usize)
+    }
+
+    /// Whether it is one block, and not all of a leaf from there on.
+    #[inline(always)]
+    pub(super) fn is_one(self) -> bool {
+        self.0 & Self::ONE != 0
     }
 }
 
@@ -83,6 +95,17 @@ pub(super) struct Layout {
 impl Layout {
     pub(super) fn new(mesh: &Mesh, tree: &Tree) -> Self {
         collapse(mesh, tree)
+    }
+
+    /// The blocks of a leaf.
+    pub(super) fn blocks_of(&self, child: Child, first: usize) -> &[Block] {
+        let is_last = |block: &Block| child.is_one() || block.is_last();
+        let last = self.blocks[first..].iter().position(is_last).unwrap_or(0);
+        &self.blocks[first..=first + last]
+    }
+
+    pub(super) fn size_bytes(&self) -> usize {
+        size_of_val(&self.wides[..]) + size_of_val(&self.blocks[..])
     }
 
     /// Where a wide node or the first block of a leaf is in memory, and how long it is.

@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 use super::fill::Chunk;
 use super::{Batch, BatchError, Lists};
 use crate::geometry::{Hit, Ray};
-use crate::trace::hits::{Any, Closest, Crossings, FirstHits};
-use crate::trace::stream::trace;
+use crate::trace::hits::{AllHits, Any, Closest, Crossings, FirstHits};
+use crate::trace::stream::{trace, trace_all};
 use crate::trace::traverse::Visitor;
 
 /// Queries of rays. They panic if there are not as many answers, or triangles in
@@ -27,8 +27,18 @@ impl Batch<'_> {
 
     /// Writes to `counts[i]` [how many triangles](crate::Tracer::count_hits) `rays[i]` hits.
     pub fn count_hits(&self, rays: &[Ray], counts: &mut [u32]) -> Result<(), BatchError> {
-        let begin = |index: usize, ray: &Ray| Crossings::new(ray, self.accept(index));
-        self.ask(rays, counts, begin, |it| it.count() as u32)
+        self.check_except(rays);
+        let ask = |chunk: &Chunk<Ray>, counts: &mut [u32]| {
+            counts.fill(0);
+            let begin = |place: usize, ray: &Ray| {
+                let accept = self.accept((chunk.index)(place));
+                ray.is_valid().then(|| Crossings::new(ray, accept))
+            };
+            let end = |index: usize, it: Crossings<_>| counts[index] = it.count() as u32;
+            trace_all(&self.tracer.trip, chunk.queries, begin, end);
+        };
+        let reorder = self.options.reorder;
+        self.fill_chunks(rays, counts, reorder, |ray| self.key_of_ray(ray), ask)
     }
 
     /// Gives `sink` the [first](crate::Tracer::first_hits) `limit` hits of each ray, in the order
@@ -60,7 +70,17 @@ impl Batch<'_> {
         rays: &[Ray],
         sink: impl FnMut(Lists<Hit>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
-        self.first_hits(rays, usize::MAX, sink)
+        self.check_except(rays);
+        let ask = |first: usize, rays: &[Ray], lists: &mut [Vec<Hit>]| {
+            let lists = RefCell::new(lists);
+            let begin = |index: usize, ray: &Ray| {
+                let list = std::mem::take(&mut lists.borrow_mut()[index]);
+                ray.is_valid().then(|| AllHits::new(ray, self.accept(first + index), list))
+            };
+            let end = |index: usize, it: AllHits<_>| lists.borrow_mut()[index] = it.in_order();
+            trace_all(&self.tracer.trip, rays, begin, end);
+        };
+        self.stream_groups(rays, ask, sink)
     }
 
     /// Writes to `answers[i]` what `answer` makes of the visitor that `begin` gives for `rays[i]`,

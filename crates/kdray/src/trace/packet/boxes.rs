@@ -150,8 +150,8 @@ impl Bounds {
     #[inline]
     #[target_feature(enable = "avx2,fma")]
     fn meet(&self, wide: &Wide, until: f32) -> (<Eight as Arithmetic>::Mask, Eight) {
-        // SAFETY: rows are eight lanes, aligned like the node.
         let row = |end: usize, axis: usize| {
+            // SAFETY: rows are eight lanes, aligned like the node.
             Eight(unsafe { _mm256_load_ps(wide.bounds[end][axis].as_ptr()) })
         };
         let (mut enter, mut leave) = (self.t_min, self.t_min.all(until));

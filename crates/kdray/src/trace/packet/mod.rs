@@ -106,7 +106,8 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
                 last = self.last();
             } else if let Some(first) = child.block() {
                 let triangles = triangles.get_or_insert_with(|| self.triangles());
-                self.test_leaf(&self.trip.layout.blocks[first..], triangles, mask, visitors);
+                let leaf = (&self.trip.layout.blocks[first..], child.is_one());
+                self.test_leaf(leaf, triangles, mask, visitors);
                 last = self.last();
             } else {
                 // SAFETY: there is a vector, so the processor has AVX2.
@@ -151,7 +152,7 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
     #[inline(always)]
     fn test_leaf(
         &mut self,
-        blocks: &[Block],
+        (blocks, is_one): (&[Block], bool),
         triangles: &Triangles<L>,
         mask: u32,
         visitors: &mut [Option<V>],
@@ -160,7 +161,7 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
             for place in block.places() {
                 self.test_triangle((block, place), triangles, mask, visitors);
             }
-            if block.is_last() {
+            if is_one || block.is_last() {
                 break;
             }
         }

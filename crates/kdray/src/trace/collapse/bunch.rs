@@ -1,0 +1,115 @@
+//! Which triangles of a leaf make a block.
+//!
+//! A leaf of more triangles than a block holds is halved, and its halves, so that the boxes of its
+//! blocks are small: a ray that meets the leaf passes by most of them.
+
+use crate::geometry::Aabb;
+use crate::trace::block::LANES;
+
+/// Leaves of more triangles keep their order. No wide node holds as many blocks.
+const MOST: usize = 8 * LANES;
+
+/// A triangle, and what is in the leaf of it.
+#[derive(Clone, Copy)]
+pub(super) struct Part {
+    pub(super) triangle: u32,
+    pub(super) bounds: Aabb,
+}
+
+/// Brings parts in the order of their blocks, all of which are full where that is possible. Gives the
+/// number of parts of each block to `block`.
+pub(super) fn bunch(parts: &mut [Part], block: &mut impl FnMut(&[Part])) {
+    if parts.len() > MOST {
+        parts.chunks(LANES).for_each(block);
+    } else if parts.len() <= LANES {
+        parts.sort_unstable_by_key(|part| part.triangle);
+        block(parts);
+    } else {
+        let left = halve(parts);
+        let (left, right) = parts.split_at_mut(left);
+        bunch(left, block);
+        bunch(right, block);
+    }
+}
+
+/// Orders parts so that the first of them, as many as are given back, and the others are best apart:
+/// of the ways with the fewest blocks, the one whose boxes are met least.
+fn halve(parts: &mut [Part]) -> usize {
+    let (mut best, mut best_cost) = ((0, 0), f64::INFINITY);
+    for axis in 0..3 {
+        sort(parts, axis);
+        let mut below = [0.0; MOST];
+        let mut all = Aabb::EMPTY;
+        for (place, part) in parts.iter().enumerate() {
+            all = all.union(&part.bounds);
+            below[place] = all.half_area();
+        }
+        all = Aabb::EMPTY;
+        for left in (1..parts.len()).rev() {
+            all = all.union(&parts[left].bounds);
+            let [of_left, of_right] = [left, parts.len() - left].map(|count| count.div_ceil(LANES));
+            if of_left + of_right > parts.len().div_ceil(LANES) {
+                continue;
+            }
+            let cost = below[left - 1] * of_left as f64 + all.half_area() * of_right as f64;
+            if cost < best_cost {
+                (best, best_cost) = ((axis, left), cost);
+            }
+        }
+    }
+    sort(parts, best.0);
+    best.1
+}
+
+fn sort(parts: &mut [Part], axis: usize) {
+    let middle = |part: &Part| part.bounds.lower[axis] + part.bounds.upper[axis];
+    parts
+        .sort_unstable_by(|a, b| middle(a).total_cmp(&middle(b)).then(a.triangle.cmp(&b.triangle)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::noise::noise;
+
+    fn parts(count: usize, state: &mut u32) -> Vec<Part> {
+        let part = |triangle| {
+            let corner = [(); 3].map(|()| 10.0 * noise(state));
+            let size = noise(state);
+            let bounds = Aabb { lower: corner, upper: corner.map(|at| at + size) };
+            Part { triangle, bounds }
+        };
+        (0..count as u32).map(part).collect()
+    }
+
+    #[test]
+    fn blocks_are_as_few_as_can_be_and_hold_every_part_once() {
+        let mut state = 3;
+        for count in 1..150 {
+            let mut parts = parts(count, &mut state);
+            let (mut blocks, mut seen) = (0, Vec::new());
+            bunch(&mut parts, &mut |block| {
+                assert!((1..=LANES).contains(&block.len()), "{} of {count}", block.len());
+                blocks += 1;
+                seen.extend(block.iter().map(|part| part.triangle));
+            });
+            assert_eq!(blocks, count.div_ceil(LANES), "of {count}");
+            seen.sort_unstable();
+            assert_eq!(seen, (0..count as u32).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn parts_that_lie_apart_are_in_blocks_apart() {
+        let mut parts = parts(12, &mut 5);
+        for (at, part) in parts.iter_mut().enumerate().filter(|(at, _)| at % 2 == 0) {
+            part.bounds.lower[1] += 100.0 + at as f32;
+            part.bounds.upper[1] += 100.0 + at as f32;
+        }
+        let mut blocks = Vec::new();
+        bunch(&mut parts, &mut |block| {
+            blocks.push(block.iter().map(|part| part.triangle).collect::<Vec<_>>());
+        });
+        assert_eq!(blocks, [[1, 3, 5, 7, 9, 11], [0, 2, 4, 6, 8, 10]]);
+    }
+}
