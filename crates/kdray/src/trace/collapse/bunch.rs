@@ -35,36 +35,57 @@ pub(super) fn bunch(parts: &mut [Part], block: &mut impl FnMut(&[Part])) {
 /// Orders parts so that the first of them, as many as are given back, and the others are best apart:
 /// of the ways with the fewest blocks, the one whose boxes are met least.
 fn halve(parts: &mut [Part]) -> usize {
-    let (mut best, mut best_cost) = ((0, 0), f64::INFINITY);
-    for axis in 0..3 {
-        sort(parts, axis);
-        let mut below = [0.0; MOST];
-        let mut all = Aabb::EMPTY;
-        for (place, part) in parts.iter().enumerate() {
-            all = all.union(&part.bounds);
-            below[place] = all.half_area();
-        }
-        all = Aabb::EMPTY;
-        for left in (1..parts.len()).rev() {
-            all = all.union(&parts[left].bounds);
-            let [of_left, of_right] = [left, parts.len() - left].map(|count| count.div_ceil(LANES));
-            if of_left + of_right > parts.len().div_ceil(LANES) {
-                continue;
-            }
-            let cost = below[left - 1] * of_left as f64 + all.half_area() * of_right as f64;
-            if cost < best_cost {
-                (best, best_cost) = ((axis, left), cost);
-            }
+    let mut orders = [[0; MOST]; 3];
+    let (mut best, mut best_cost) = ((0, 1), f32::INFINITY);
+    for (axis, order) in orders.iter_mut().enumerate() {
+        let order = &mut order[..parts.len()];
+        sort(parts, axis, order);
+        let (left, cost) = cut(parts, order);
+        if cost < best_cost {
+            (best, best_cost) = ((axis, left), cost);
         }
     }
-    sort(parts, best.0);
+    let mut ordered = [parts[0]; MOST];
+    for (part, keyed) in ordered.iter_mut().zip(&orders[best.0][..parts.len()]) {
+        *part = parts[place_of(*keyed)];
+    }
+    parts.copy_from_slice(&ordered[..parts.len()]);
     best.1
 }
 
-fn sort(parts: &mut [Part], axis: usize) {
-    let middle = |part: &Part| part.bounds.lower[axis] + part.bounds.upper[axis];
-    parts
-        .sort_unstable_by(|a, b| middle(a).total_cmp(&middle(b)).then(a.triangle.cmp(&b.triangle)));
+/// Of an order, how many parts are best to the left, and the cost.
+fn cut(parts: &[Part], order: &[u64]) -> (usize, f32) {
+    let count = parts.len();
+    let (mut all, mut below) = (Aabb::EMPTY, [0.0; MOST]);
+    for (below, keyed) in below.iter_mut().zip(order) {
+        all = all.union(&parts[place_of(*keyed)].bounds);
+        *below = all.half_area() as f32;
+    }
+    all = Aabb::EMPTY;
+    let mut best = (1, f32::INFINITY);
+    for left in (1..count).rev() {
+        all = all.union(&parts[place_of(order[left])].bounds);
+        let [of_left, of_right] = [left, count - left].map(|count| count.div_ceil(LANES));
+        if of_left + of_right == count.div_ceil(LANES) {
+            let cost = below[left - 1] * of_left as f32 + all.half_area() as f32 * of_right as f32;
+            best = if cost < best.1 { (left, cost) } else { best };
+        }
+    }
+    best
+}
+
+/// Places of parts in the order of their middles, below keys that are ordered in the same way.
+fn sort(parts: &[Part], axis: usize, order: &mut [u64]) {
+    for (place, (part, keyed)) in parts.iter().zip(&mut *order).enumerate() {
+        let bits = (part.bounds.lower[axis] + part.bounds.upper[axis]).to_bits();
+        let key = bits ^ if bits >> 31 == 1 { u32::MAX } else { 1 << 31 };
+        *keyed = u64::from(key) << 32 | place as u64;
+    }
+    order.sort_unstable();
+}
+
+fn place_of(keyed: u64) -> usize {
+    keyed as u32 as usize & (MOST - 1)
 }
 
 #[cfg(test)]

@@ -63,9 +63,15 @@ impl<'a> Plan<'a> {
     }
 
     fn costs_of_both(&self, node: usize, below: [usize; 2]) -> [f32; 8] {
-        let mut costs = [0.0; 8];
-        for children in 2..=8 {
-            costs[children - 1] = self.best_share(below, children).1;
+        let [left, right] = below.map(|node| self.costs[node]);
+        let mut costs = [f32::INFINITY; 8];
+        // The costs of the right, behind as many children as the left has.
+        let mut behind = [f32::INFINITY; 16];
+        behind[8..].copy_from_slice(&right);
+        for (share, left) in left.iter().enumerate().take(7) {
+            for (cost, right) in costs.iter_mut().zip(&behind[7 - share..]) {
+                *cost = lesser(*cost, left + right);
+            }
         }
         costs[0] = (STEP * self.shapes.bounds[node].half_area()) as f32 + costs[7];
         for more in 1..8 {
