@@ -56,8 +56,8 @@ impl Device {
             return Ok(pipeline.clone());
         }
         // The probes that find out the form of floats have none.
-        let is_exact = kernel.source.contains("//#import float\n");
-        let floats = if is_exact { self.floats()? } else { Floats::Soft };
+        let has_floats = wgsl::has_floats(kernel.source);
+        let floats = if has_floats { self.floats()? } else { Floats::Soft };
         let source = wgsl::compose(kernel.source, floats);
         let pipeline = self.compile_source(kernel, &source)?;
         lock(&self.pipelines).insert(key, pipeline.clone());

@@ -55,6 +55,14 @@ pub fn compose(source: &str, floats: Floats) -> String {
     text
 }
 
+/// Whether `source`, or a part that it imports, has the floats that depend on the device.
+pub(crate) fn has_floats(source: &str) -> bool {
+    let mut imports = source.lines().filter_map(|line| line.strip_prefix("//#import "));
+    imports.any(|name| {
+        name == "float" || parts().any(|part| part.0 == name && has_floats(part.1))
+    })
+}
+
 fn import<'a>(source: &'a str, floats: Floats, known: &mut Vec<&'a str>, text: &mut String) {
     for line in source.lines() {
         match line.strip_prefix("//#import ") {
@@ -91,5 +99,14 @@ mod tests {
         let floats: String = Floats::SoftDivision.parts().into_iter().map(part).collect();
         let expected = format!("{}{floats}last\n", part("count"));
         assert_eq!(compose(source, Floats::SoftDivision), expected);
+    }
+
+    #[test]
+    fn kernels_whose_parts_have_floats_are_compiled_for_the_device() {
+        for kernel in kernels() {
+            let [hardware, soft] =
+                [Floats::Hardware, Floats::Soft].map(|floats| compose(kernel.source, floats));
+            assert_eq!(has_floats(kernel.source), hardware != soft, "{}", kernel.name);
+        }
     }
 }
