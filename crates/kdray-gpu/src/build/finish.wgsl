@@ -24,7 +24,7 @@ struct Moved {
 const PART_WORDS = 14u; // Its triangle, its node, and six events.
 const CORNER_WORDS = 12u; // Vertices of a triangle and their coordinates.
 
-var<workgroup> words_read: u32;
+var<private> words_read: u32;
 
 @compute @workgroup_size(TEAM)
 fn finish(
@@ -37,35 +37,33 @@ fn finish(
         begin(slot, local);
     }
     for (var step = 0u; step < 4u * SMALL; step++) {
+        if local == 0u {
+            state = stand;
+        }
         if workgroupUniformLoad(&state) != BUSY {
             break;
         }
         let task = current;
-        if local == 0u {
-            clear_masks();
-        }
+        clear_masks(local);
         offers[local] = offer(task, local);
         workgroupBarrier();
         let plan = choice(task);
+        let is_cut = plan.what != LEAF && (plan.what & EMPTY) == 0u;
         if plan.what == LEAF {
             put_references(task, local);
-        } else {
+        } else if is_cut {
             route_parts(task, plan, local);
         }
         workgroupBarrier();
-        if plan.what != LEAF {
+        if is_cut {
             clip_straddlers(task, plan, local);
         }
         workgroupBarrier();
-        if plan.what != LEAF {
+        if is_cut {
             share_parts(task, local);
+            words_read += 2u * CORNER_WORDS * size(mask(MASK_BOTH));
         }
-        if local == 0u {
-            if plan.what != LEAF {
-                words_read += 2u * CORNER_WORDS * size(mask(MASK_BOTH));
-            }
-            advance(task, plan);
-        }
+        advance(task, plan, local);
     }
     if slot < params.count && local == 0u {
         end(slot);
@@ -77,9 +75,6 @@ fn begin(slot: u32, local: u32) {
     let node = nodes[slot];
     let lower = vec3u(node.lower[0], node.lower[1], node.lower[2]);
     let upper = vec3u(node.upper[0], node.upper[1], node.upper[2]);
-    if local == 0u {
-        state = IDLE;
-    }
     let prices = prices_of(lower, upper, 0u);
     if node.count > SMALL || !is_open(prices, node.count) {
         return;
@@ -88,32 +83,25 @@ fn begin(slot: u32, local: u32) {
         for (var axis = 0u; axis < 3u; axis++) {
             let event = events[axis * params.events + 2u * node.first + index];
             let part = (event.what >> 2u) - node.first;
-            if (event.what & 1u) == 1u {
-                part_lower[part][axis] = event.position;
-            } else {
-                part_upper[part][axis] = event.position;
-            }
+            part_bounds[6u * part + 2u * axis + 1u - (event.what & 1u)] = event.position;
         }
     }
     for (var part = local; part < node.count; part += TEAM) {
         part_triangle[part] = references.list[node.first + part].triangle;
     }
-    if local == 0u {
-        piece = Piece(PIECE * node.first, node.count, 0u, 0u);
-        waiting_count = 0u;
-        current = Task(lower, 0u, upper, node.count, NONE, params.depth_left);
-        state = BUSY;
-        words_read = PART_WORDS * node.count;
-    }
+    piece = Piece(PIECE * node.first, node.count, 0u, 0u);
+    current = Task(lower, 0u, upper, node.count, NONE, params.depth_left);
+    stand = BUSY;
+    words_read = PART_WORDS * node.count;
 }
 
 // Says how large the piece is, and what it took.
 fn end(slot: u32) {
     var words = 0u;
     var words_written = 2u * piece.nodes + piece.references;
-    if state == DONE && piece.nodes == 1u {
+    if stand == DONE && piece.nodes == 1u {
         words = NONE;
-    } else if state == DONE {
+    } else if stand == DONE {
         words_written += 2u;
         words = words_written;
         pieces[piece.start] = piece.nodes;

@@ -9,12 +9,9 @@ const MASK_BOTH = 2u;
 
 // A bit a part: whether it goes left, goes right, and is clipped; two words each.
 var<workgroup> masks: array<atomic<u32>, 6>;
-// By straddler and side.
-var<workgroup> clipped: array<Part, 2 * SMALL>;
-
-fn clear_masks() {
-    for (var word = 0u; word < 6u; word++) {
-        atomicStore(&masks[word], 0u);
+fn clear_masks(local: u32) {
+    if local < 6u {
+        atomicStore(&masks[local], 0u);
     }
 }
 
@@ -45,8 +42,8 @@ fn route_parts(task: Task, plan: Plan, local: u32) {
     let flat_side = select(LEFT, RIGHT, (plan.what & FLAT_RIGHT) != 0u);
     for (var index = local; index < task.count; index += TEAM) {
         let part = task.first + index;
-        let left = select(0u, LEFT, part_lower[part][axis] < plan.position);
-        let right = select(0u, RIGHT, part_upper[part][axis] > plan.position);
+        let left = select(0u, LEFT, part_bounds[6u * part + 2u * axis] < plan.position);
+        let right = select(0u, RIGHT, part_bounds[6u * part + 2u * axis + 1u] > plan.position);
         let way = select(left | right, flat_side, (left | right) == 0u);
         let word = index / 32u;
         if (way & LEFT) != 0u {
@@ -73,8 +70,8 @@ fn clip_straddlers(task: Task, plan: Plan, local: u32) {
             atomicAnd(&masks[2u * side + index / 32u], ~bit(index));
         }
         for (var axis = 0u; axis < 3u; axis++) {
-            clipped[item].lower[axis] = part.lower[axis];
-            clipped[item].upper[axis] = part.upper[axis];
+            part_bounds[6u * (ROOM + item) + 2u * axis] = part.lower[axis];
+            part_bounds[6u * (ROOM + item) + 2u * axis + 1u] = part.upper[axis];
         }
     }
 }
@@ -112,24 +109,26 @@ fn share_parts(task: Task, local: u32) {
         return;
     }
     for (var index = local; index < task.count; index += TEAM) {
-        let item = select(NONE, 2u * before(both, index), has(both, index));
-        if has(left, index) {
-            put_part(first + size(right) + before(left, index), task.first + index, item, 0u);
+        let own = task.first + index;
+        let is_left = has(left, index);
+        let is_right = has(right, index);
+        let to_right = first + before(right, index);
+        let to = select(to_right, first + size(right) + before(left, index), is_left);
+        let item = 2u * before(both, index);
+        let is_cut = has(both, index);
+        if is_left || is_right {
+            put_part(to, own, select(own, ROOM + item + u32(!is_left), is_cut));
         }
-        if has(right, index) {
-            put_part(first + before(right, index), task.first + index, item, 1u);
+        if is_left && is_right {
+            put_part(to_right, own, ROOM + item + 1u);
         }
     }
 }
 
-// Copies a part, or takes what was clipped of it.
-fn put_part(to: u32, own: u32, item: u32, side: u32) {
+// Copies a part, or what was clipped of it.
+fn put_part(to: u32, own: u32, bounds: u32) {
     part_triangle[to] = part_triangle[own];
-    if item == NONE {
-        part_lower[to] = part_lower[own];
-        part_upper[to] = part_upper[own];
-    } else {
-        part_lower[to] = clipped[item + side].lower;
-        part_upper[to] = clipped[item + side].upper;
+    for (var word = 0u; word < 6u; word++) {
+        part_bounds[6u * to + word] = part_bounds[6u * bounds + word];
     }
 }

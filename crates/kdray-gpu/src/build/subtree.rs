@@ -73,15 +73,21 @@ pub(crate) fn finish(
         });
         let straddles =
             |member: &&Member| member.lower[axis] < position && member.upper[axis] > position;
-        *words_read += 2 * CORNER_WORDS * own.iter().filter(straddles).count() as u32;
-        if members.len() + left.len() + right.len() > ROOM || waiting.len() == WAITING {
+        let straddlers = own.iter().filter(straddles).count();
+        *words_read += 2 * CORNER_WORDS * straddlers as u32;
+        // Where nothing is on one side, all parts stay where they are.
+        let stay = straddlers == 0 && (left.is_empty() || right.is_empty());
+        let room = if stay { 0 } else { left.len() + right.len() };
+        if members.len() + room > ROOM || waiting.len() == WAITING {
             return None;
         }
         let first = position_of(position).to_bits();
         let place = piece.put_node(task.parent, Record { first, second: axis as u32 })?;
         let mut child = |side, list: &[Member], parent| {
-            let first = members.len();
-            members.extend_from_slice(list);
+            let first = if stay && !list.is_empty() { task.first } else { members.len() };
+            if !stay {
+                members.extend_from_slice(list);
+            }
             let node = Node { count: list.len() as u32, ..half(&task.node, plane, side) };
             Task { node, first, parent, depth: task.depth - 1 }
         };

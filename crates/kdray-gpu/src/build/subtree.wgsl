@@ -14,6 +14,11 @@ const IDLE = 0u;
 const BUSY = 1u;
 const DONE = 2u;
 
+// Beside a plane's axis: there is nothing on one side.
+const EMPTY_LEFT = 8u;
+const EMPTY_RIGHT = 16u;
+const EMPTY = EMPTY_LEFT | EMPTY_RIGHT;
+
 // A node: its parts from `first` on, the node whose right child it is, and the levels below it.
 struct Task {
     lower: vec3u,
@@ -32,14 +37,26 @@ struct Piece {
     references: u32,
 }
 
-var<workgroup> part_lower: array<array<u32, 3>, ROOM>;
-var<workgroup> part_upper: array<array<u32, 3>, ROOM>;
+// By part and axis, where it starts and ends; behind the parts that there is room for, what was
+// clipped, by straddler and side.
+var<workgroup> part_bounds: array<u32, 6 * (ROOM + 2 * SMALL)>;
 var<workgroup> part_triangle: array<u32, ROOM>;
-var<workgroup> current: Task;
-var<workgroup> waiting: array<Task, WAITING>;
-var<workgroup> waiting_count: u32;
-var<workgroup> piece: Piece;
+// A word an invocation.
+var<workgroup> waiting: array<u32, TEAM * WAITING>;
 var<workgroup> state: u32;
+
+// The same in all invocations of a team, which need not share it then.
+var<private> current: Task;
+var<private> waiting_count: u32;
+var<private> piece: Piece;
+var<private> stand: u32;
+// Whether what was counted for the node before holds for this one: it has the same parts.
+var<private> is_counted: bool;
+
+// Where a part starts or ends, of those from `first` on: two ends each.
+fn bound(first: u32, axis: u32, end: u32) -> u32 {
+    return part_bounds[6u * (first + end / 2u) + 2u * axis + end % 2u];
+}
 
 // Lists the references of a leaf, if there is room.
 fn put_references(task: Task, local: u32) {
@@ -53,17 +70,37 @@ fn put_references(task: Task, local: u32) {
 }
 
 // Notes a node down, and gives its place; NONE if there is no room.
-fn put_node(task: Task, node: vec2u) -> u32 {
+fn put_node(parent: u32, node: vec2u, local: u32) -> u32 {
     let place = piece.nodes;
     if place == most_nodes(piece.room) {
         return NONE;
     }
-    let word = piece.start + 2u + 2u * place;
-    pieces[word] = node.x;
-    pieces[word + 1u] = node.y;
-    if task.parent != NONE {
-        pieces[piece.start + 3u + 2u * task.parent] |= place << 2u;
+    if local == 0u {
+        let word = piece.start + 2u + 2u * place;
+        pieces[word] = node.x;
+        pieces[word + 1u] = node.y;
+        if parent != NONE {
+            pieces[piece.start + 3u + 2u * parent] |= place << 2u;
+        }
     }
     piece.nodes++;
     return place;
+}
+
+// Lets a right child wait: every invocation notes a word down.
+fn park(task: Task, local: u32) {
+    let rest = vec2u(task.parent, (task.depth << 20u) | (task.first << 10u) | task.count);
+    let box = select(task.upper[local % 3u], task.lower[local % 3u], local < 3u);
+    waiting[TEAM * waiting_count + local] = select(box, rest[local % 2u], local >= 6u);
+    waiting_count++;
+}
+
+// The last that waits.
+fn unpark() -> Task {
+    waiting_count--;
+    let at = TEAM * waiting_count;
+    let lower = vec3u(waiting[at], waiting[at + 1u], waiting[at + 2u]);
+    let upper = vec3u(waiting[at + 3u], waiting[at + 4u], waiting[at + 5u]);
+    let last = waiting[at + 7u];
+    return Task(lower, (last >> 10u) & 0x3ffu, upper, last & 0x3ffu, waiting[at + 6u], last >> 20u);
 }
