@@ -68,6 +68,7 @@ pub(crate) use subtree::{ROOM, SMALL, WAITING};
 
 use crate::device::Device;
 use crate::error::GpuError;
+use crate::primitives::{radix, scan};
 
 /// The parts that the kernels of the build share.
 pub(crate) const PARTS: &[(&str, &str)] = &[
@@ -217,7 +218,9 @@ fn build_on(
 ///
 /// If a kernel is refused, or the device fails.
 pub fn prepare(device: &Device) -> Result<(), GpuError> {
-    KERNELS.iter().try_for_each(|kernel| device.pipeline(&kernel.shader).map(|_| ()))
+    let mut kernels: Vec<_> = KERNELS.iter().map(|kernel| &kernel.shader).collect();
+    kernels.extend([&scan::REDUCE, &scan::APPLY, &radix::COUNT, &radix::SCATTER]);
+    device.compile(&kernels)
 }
 
 /// The same with the twins of the kernels, on the CPU: for tests. Without teams, all levels are built

@@ -17,7 +17,7 @@ pub use limits::Limits;
 
 use crate::error::GpuError;
 use crate::float::Floats;
-use crate::record::{Binding, Kernel};
+use crate::record::Binding;
 
 /// An adapter that was opened.
 ///
@@ -32,7 +32,7 @@ pub struct Device {
     failure: Failure,
     memory: Arc<MemoryUse>,
     /// By name and text.
-    pub(crate) pipelines: Mutex<HashMap<(&'static str, usize), wgpu::ComputePipeline>>,
+    pub(crate) pipelines: Mutex<HashMap<[&'static str; 2], wgpu::ComputePipeline>>,
     /// What the host reads through, kept for the next time.
     staging: Mutex<Option<wgpu::Buffer>>,
     /// The parameters of the recording before, kept for the next one.
@@ -176,15 +176,6 @@ impl Device {
     #[must_use]
     pub fn has_timestamps(&self) -> bool {
         self.raw.features().contains(wgpu::Features::TIMESTAMP_QUERY)
-    }
-
-    /// Compiles `kernels`, which would otherwise happen when they first run.
-    ///
-    /// # Errors
-    ///
-    /// If a kernel is refused, or the device fails.
-    pub fn compile(&self, kernels: &[&Kernel]) -> Result<(), GpuError> {
-        kernels.iter().try_for_each(|kernel| self.pipeline(kernel).map(|_| ()))
     }
 
     /// How many kernels were compiled since the device was opened.

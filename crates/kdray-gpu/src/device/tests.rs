@@ -4,7 +4,7 @@ use kdray_test::vulkan;
 
 use super::*;
 use crate::primitives::scan::Scan;
-use crate::record::{Count, Recording};
+use crate::record::{Count, Kernel, Recording};
 
 fn open() -> Device {
     vulkan::set_up();

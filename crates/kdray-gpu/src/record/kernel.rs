@@ -1,5 +1,7 @@
 //! Kernels: a WGSL entry point each, compiled once a device.
 
+use super::count::Work;
+use super::recording::{Moved, Recording};
 use crate::device::{Device, lock};
 use crate::error::GpuError;
 use crate::float::Floats;
@@ -36,6 +38,14 @@ pub enum Binding {
     Write,
 }
 
+impl Kernel {
+    /// Kernels of different crates may share a name, but not a text. A kernel that is a constant has its
+    /// text in several places.
+    fn key(&self) -> [&'static str; 2] {
+        [self.name, self.source]
+    }
+}
+
 impl Binding {
     pub(crate) fn layout(self) -> wgpu::BindingType {
         let ty = match self {
@@ -47,11 +57,48 @@ impl Binding {
     }
 }
 
+/// Words that stand for whatever a kernel binds while nothing is done.
+const NOTHING: usize = 256;
+
+/// The most that a kernel binds.
+const BINDINGS: u64 = 9;
+
 impl Device {
+    /// Compiles `kernels`, which would otherwise happen when they first run.
+    ///
+    /// Some drivers leave most of it to the first dispatch, so each gets one, of no workgroups.
+    ///
+    /// # Errors
+    ///
+    /// If a kernel is refused, or the device fails.
+    pub fn compile(&self, kernels: &[&'static Kernel]) -> Result<(), GpuError> {
+        let is_new = |kernel: &&&Kernel| !lock(&self.pipelines).contains_key(&kernel.key());
+        let kernels: Vec<_> = kernels.iter().filter(is_new).collect();
+        if kernels.is_empty() {
+            return Ok(());
+        }
+        let words = NOTHING as u64;
+        let read = self.buffer("nothing to read", words)?;
+        let written = self.buffer("nothing to write", words * BINDINGS)?;
+        let mut recording = Recording::new(self);
+        for kernel in kernels {
+            let buffer = |(index, binding)| match binding {
+                &Binding::Uniform => None,
+                Binding::Read => Some(read.clone()),
+                Binding::Write => Some(written.words(words * index, words)),
+            };
+            let buffers: Vec<_> = (0..).zip(kernel.bindings).filter_map(buffer).collect();
+            let buffers: Vec<_> = buffers.iter().collect();
+            let work = Work::groups(0);
+            recording.dispatch(kernel, &[0_u32; NOTHING], &buffers, &work, |_| Moved::default());
+        }
+        recording.run()?;
+        self.wait()
+    }
+
     /// The kernel, compiled for this device the first time that it is asked for.
     pub(crate) fn pipeline(&self, kernel: &Kernel) -> Result<wgpu::ComputePipeline, GpuError> {
-        // Kernels of different crates may share a name, but not a text.
-        let key = (kernel.name, kernel.source.as_ptr().addr());
+        let key = kernel.key();
         if let Some(pipeline) = lock(&self.pipelines).get(&key) {
             return Ok(pipeline.clone());
         }

@@ -58,9 +58,7 @@ pub fn compose(source: &str, floats: Floats) -> String {
 /// Whether `source`, or a part that it imports, has the floats that depend on the device.
 pub(crate) fn has_floats(source: &str) -> bool {
     let mut imports = source.lines().filter_map(|line| line.strip_prefix("//#import "));
-    imports.any(|name| {
-        name == "float" || parts().any(|part| part.0 == name && has_floats(part.1))
-    })
+    imports.any(|name| name == "float" || parts().any(|part| part.0 == name && has_floats(part.1)))
 }
 
 fn import<'a>(source: &'a str, floats: Floats, known: &mut Vec<&'a str>, text: &mut String) {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use kdray::{BuildOptions, Mesh, Tree};
-use kdray_gpu::{Device, Limits, Rebuilder};
+use kdray_gpu::{Device, Limits, Rebuilder, build, prepare};
 use kdray_test::{scenes, shared, vulkan};
 
 use crate::support::open;
@@ -51,6 +51,18 @@ fn the_same_size_again_takes_no_memory_and_no_kernel() {
     let compiled = device.compiled();
     let mesh = scenes::ordinary().into_iter().next().expect("there are scenes").mesh;
     rebuild(&device, [&mesh], &BuildOptions::default());
+    assert_eq!(device.compiled(), compiled);
+}
+
+/// A build compiles nothing that was compiled for it before.
+#[test]
+fn what_is_prepared_is_what_runs() {
+    let device = open(vulkan::LAVAPIPE, &Limits::PORTABLE);
+    prepare(&device).expect("the kernels compile");
+    let compiled = device.compiled();
+    let mesh = scenes::ordinary().into_iter().next().expect("there are scenes").mesh;
+    let tree = build(&device, &mesh, &BuildOptions::default()).expect("it is built");
+    assert!(!tree.nodes().is_empty());
     assert_eq!(device.compiled(), compiled);
 }
 
