@@ -34,8 +34,7 @@ fn place(
     let side = slot % 2u;
     let pair = pairs[slot / 2u];
     let interval = interval_of(event, axis, pair);
-    let chunk = min(interval / CHUNK, chunks_of(params.events) - 1u);
-    let kept_before = kept_before_chunk(axis, chunk) + kept(axis, chunk * CHUNK, interval);
+    let kept_before = kept_before_place(axis, interval);
     let others = 2u * select(pair.start.left, pair.start.right, side == 1u);
     let base = axis * params.next_events + 2u * next_nodes[slot].first;
     let own = rank - 2u * next_nodes[slot].fresh_first;
@@ -55,4 +54,14 @@ fn interval_of(event: Event, axis: u32, pair: Pair) -> u32 {
         }
     }
     return low;
+}
+
+// How many events before a place keep their order in each child, from the nearer end of its chunk.
+fn kept_before_place(axis: u32, place: u32) -> vec2u {
+    let last = chunks_of(params.events) - 1u;
+    let chunk = min((place + CHUNK / 2u) / CHUNK, last);
+    let start = chunk * CHUNK;
+    let between = kept(axis, min(start, place), max(start, place));
+    let before = kept_before_chunk(axis, chunk);
+    return select(before + between, before - between, place < start);
 }

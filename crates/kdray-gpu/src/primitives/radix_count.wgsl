@@ -18,7 +18,7 @@ fn radix_count(
     if invocation < DIGITS && tile < params.tiles {
         var sum = 0u;
         for (var block = 0u; block < CHUNK; block++) {
-            sum += number_of(invocation, blocks[block]);
+            sum += (blocks[block * WORDS + invocation / 2u] >> (invocation % 2u * 16u)) & 0xffffu;
         }
         counts[invocation * params.tiles + tile] = sum;
     }

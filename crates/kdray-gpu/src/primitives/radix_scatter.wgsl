@@ -20,7 +20,23 @@ fn radix_scatter(
     let start = min(tile * TILE + invocation * CHUNK, count);
     let end = min(start + CHUNK, count);
     share(count_digits(start, end), invocation);
-    var before = counts_before(invocation);
+    // What a chunk has becomes what comes before it in its tile.
+    if invocation < WORDS * CHUNK {
+        let block = invocation / WORDS;
+        let word = invocation % WORDS;
+        var sum = 0u;
+        for (var i = 0u; i < block; i++) {
+            sum += blocks[i * WORDS + word];
+        }
+        for (var i = 0u; i < CHUNK; i++) {
+            let at = (block * CHUNK + i) * WORDS + word;
+            let count = chunks[at];
+            chunks[at] = sum;
+            sum += count;
+        }
+    }
+    workgroupBarrier();
+    var before = digits_of(invocation);
     for (var i = start; i < end; i++) {
         let key = keys[i];
         let digit = digit_of(key);
@@ -29,16 +45,4 @@ fn radix_scatter(
         sorted_keys[place] = key;
         sorted_values[place] = values[i];
     }
-}
-
-// The counts of the chunks before an invocation's own, in its tile.
-fn counts_before(invocation: u32) -> Digits {
-    var sum = Digits();
-    for (var block = 0u; block < invocation / CHUNK; block++) {
-        sum = add(sum, blocks[block]);
-    }
-    for (var i = invocation / CHUNK * CHUNK; i < invocation; i++) {
-        sum = add(sum, chunks[i]);
-    }
-    return sum;
 }

@@ -27,8 +27,10 @@ struct Params {
 @group(0) @binding(1) var<storage> counter: array<u32>;
 @group(0) @binding(2) var<storage> keys: array<u32>;
 
-var<workgroup> chunks: array<Digits, WORKGROUP>;
-var<workgroup> blocks: array<Digits, CHUNK>;
+const WORDS = 8u; // Of the counts of all digits.
+
+var<workgroup> chunks: array<u32, WORDS * WORKGROUP>;
+var<workgroup> blocks: array<u32, WORDS * CHUNK>;
 
 fn digit_of(key: u32) -> u32 {
     return (key >> params.shift) & (DIGITS - 1u);
@@ -69,14 +71,27 @@ fn count_digits(start: u32, end: u32) -> Digits {
 
 // Makes the counts of all invocations' chunks, and of all blocks, known to all.
 fn share(chunk: Digits, invocation: u32) {
-    chunks[invocation] = chunk;
+    for (var i = 0u; i < 4u; i++) {
+        chunks[invocation * WORDS + i] = chunk.low[i];
+        chunks[invocation * WORDS + 4u + i] = chunk.high[i];
+    }
     workgroupBarrier();
-    if invocation < CHUNK {
-        var block = Digits();
+    if invocation < WORDS * CHUNK {
+        let first = invocation / WORDS * CHUNK * WORDS + invocation % WORDS;
+        var block = 0u;
         for (var i = 0u; i < CHUNK; i++) {
-            block = add(block, chunks[invocation * CHUNK + i]);
+            block += chunks[first + i * WORDS];
         }
         blocks[invocation] = block;
     }
     workgroupBarrier();
+}
+
+// The counts of a chunk.
+fn digits_of(chunk: u32) -> Digits {
+    let at = chunk * WORDS;
+    return Digits(
+        vec4u(chunks[at], chunks[at + 1u], chunks[at + 2u], chunks[at + 3u]),
+        vec4u(chunks[at + 4u], chunks[at + 5u], chunks[at + 6u], chunks[at + 7u]),
+    );
 }
