@@ -83,7 +83,12 @@ impl Collapse<'_> {
         }
         let Kind::Inner { axis, right, .. } = self.plan.shapes.tree.nodes()[node].kind() else {
             let first = *next;
-            *next += self.plan.shapes.blocks(node).len();
+            // Nothing may be left of the triangles of a leaf in its cell.
+            *next += if self.plan.shapes.is_empty(node) {
+                0
+            } else {
+                self.plan.shapes.blocks(node).len()
+            };
             return (self.order_of_blocks(&items[first..*next], first), (*next - first) as u32);
         };
         let left = self.order(node + 1, items, next);
