@@ -194,6 +194,8 @@ proptest! {
             let ray = kdray::Ray::new([-5.0, 0.3, 0.2], [1.0, 0.01, -0.02]);
             let hit = tracer.closest_hit(&ray);
             prop_assert!(hit.is_none_or(|hit| (hit.triangle as usize) < mesh.triangles().len()));
+            let closest = tracer.closest_point([0.1, 0.2, 3.0], f32::INFINITY);
+            prop_assert!(closest.is_none_or(|it| (it.triangle as usize) < mesh.triangles().len()));
         }
     }
 

@@ -171,6 +171,8 @@ impl<F> AllHits<F> {
 }
 
 impl<F: Fn(u32) -> bool> Visitor for AllHits<F> {
+    const WANTS_ALL: bool = true;
+
     #[inline(always)]
     fn hit(&mut self, hit: Hit) -> f32 {
         if self.t_min <= hit.t && hit.t <= self.t_max && (self.accept)(hit.triangle) {
@@ -210,6 +212,8 @@ impl<F> Crossings<F> {
 }
 
 impl<F: Fn(u32) -> bool> Visitor for Crossings<F> {
+    const WANTS_ALL: bool = true;
+
     #[inline(always)]
     fn hit(&mut self, hit: Hit) -> f32 {
         if self.t_min <= hit.t && hit.t <= self.t_max {

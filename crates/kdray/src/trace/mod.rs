@@ -32,7 +32,7 @@
 //!
 //! `collapse` lays the tree out in the nodes of eight boxes of `wide`; `prepare` makes of a ray what
 //! traversal needs; `traverse` visits the leaves along it from front to back, `walk`ing `step` by
-//! `step`, and `stream` does so for several rays at a time, some of them as a `packet`. `block` filters the triangles of a leaf
+//! `step`, and `stream` does so for several rays at a time, some of them as a `packet` or a `wave`. `block` filters the triangles of a leaf
 //! eight at a time, and `simd` says with which instructions, those of NEON in `neon`; `vector` is
 //! arithmetic on eight or sixteen numbers, and `sift` says by it which triangles may be hit.
 //! `intersect` says for one triangle what a hit is: it is the definition that everything else is

@@ -5,8 +5,8 @@ use std::mem::MaybeUninit;
 use super::wide::Child;
 use crate::build::MAX_DEPTH;
 
-/// Every step takes one visit and puts back at most eight, and goes down a level at least. The
-/// last eight places are never on the stack: some write eight whatever they push.
+/// Every step takes one visit and puts back at most eight, and goes down a level at least; the blocks
+/// of a leaf may be a level of their own. The last eight places are never on the stack: some write eight whatever they push.
 const CAPACITY: usize = 7 * (MAX_DEPTH as usize + 2) + 16;
 
 /// Room for a traversal that takes two visits a step, of nodes in the order of their levels: then a

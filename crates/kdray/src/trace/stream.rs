@@ -36,6 +36,13 @@ pub(super) fn trace<V: Visitor>(
     if go_together(trip, rays) {
         return in_packets(trip, rays, begin, end);
     }
+    #[cfg(target_arch = "x86_64")]
+    if V::WANTS_ALL
+        && let Some(proof) = trip.simd.avx2()
+    {
+        // SAFETY: the processor has AVX2.
+        return unsafe { wave::trace_avx2(proof, trip, rays, begin, end) };
+    }
     if !is_worth_turns(trip, rays) {
         return one_by_one(trip, rays, begin, end);
     }
@@ -49,23 +56,6 @@ pub(super) fn trace<V: Visitor>(
         return stream_with(neon, trip, rays, begin, end);
     }
     stream_with(Plain, trip, rays, begin, end);
-}
-
-/// As [`trace`], for visitors that want all hits, in whatever order.
-pub(super) fn trace_all<V: Visitor>(
-    trip: &Trip,
-    rays: &[Ray],
-    begin: impl FnMut(usize, &Ray) -> Option<V>,
-    end: impl FnMut(usize, V),
-) {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(proof) = trip.simd.avx2()
-        && !go_together(trip, rays)
-    {
-        // SAFETY: the processor has AVX2.
-        return unsafe { wave::trace_avx2(proof, trip, rays, begin, end) };
-    }
-    trace(trip, rays, begin, end);
 }
 
 /// The most rays of a packet.

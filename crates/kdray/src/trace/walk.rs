@@ -123,25 +123,9 @@ impl<'a, S: Simd> Walk<'a, S> {
     #[inline(always)]
     fn next(&mut self, layout: &Layout) -> Child {
         let next = self.stack.pop(self.until).unwrap_or(Child::NONE);
-        prefetch(layout, next);
+        layout.prefetch(next);
         next
     }
-}
-
-/// Asks for the memory of a child.
-#[inline(always)]
-fn prefetch(layout: &Layout, child: Child) {
-    #[cfg(target_arch = "x86_64")]
-    {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        let (start, bytes) = layout.place(child);
-        for line in (0..bytes).step_by(64) {
-            // SAFETY: a prefetch reads nothing, wherever it points.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(line)) };
-        }
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = (layout, child);
 }
 
 /// Shows the visitor the hits of a leaf; gives the `t` up to which there is more to see.

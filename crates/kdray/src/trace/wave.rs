@@ -104,8 +104,7 @@ struct Candidates {
     inside: u32,
 }
 
-/// Walks all `rays` and shows their visitors all hits, in no order. What visitors
-/// say of how far there is more to see is not heard. Rays without a visitor stay away.
+/// Walks all `rays` and shows their visitors all hits, in no order. Rays without a visitor stay away.
 #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
 pub(super) fn trace_avx2<V: Visitor>(
     _proof: HasAvx2,
@@ -165,7 +164,7 @@ impl Wave<'_> {
         self.nodes.reserve(8 * pairs.len());
         self.leaves.reserve(8 * pairs.len());
         for (index, pair) in pairs.iter().enumerate() {
-            prefetch(self.trip, pairs[(index + AHEAD).min(pairs.len() - 1)].child);
+            self.trip.layout.prefetch(pairs[(index + AHEAD).min(pairs.len() - 1)].child);
             let at = pair.ray as usize;
             // SAFETY: rays and children of pairs are those of the wave and of the layout.
             let (slabs, ray, wide) = unsafe {
@@ -196,7 +195,7 @@ impl Wave<'_> {
         let mut count = 0;
         for index in 0..self.leaves.len {
             let Pair { ray: at, child } = self.leaves.get(index);
-            prefetch(self.trip, self.leaves.children[index + AHEAD]);
+            self.trip.layout.prefetch(self.leaves.children[index + AHEAD]);
             let interval = [rays[at as usize].t_min, rays[at as usize].t_max];
             for place in child.block().unwrap_or(0).. {
                 if count == BLOCKS {
@@ -215,16 +214,6 @@ impl Wave<'_> {
         }
         show(blocks, &found[..count], shears, visitors);
         self.leaves.len = 0;
-    }
-}
-
-/// Asks for the memory of a node or a block.
-#[inline(always)]
-fn prefetch(trip: &Trip, child: Child) {
-    let (start, bytes) = trip.layout.place(child);
-    for line in (0..bytes).step_by(64) {
-        // SAFETY: a prefetch reads nothing, wherever it points.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(line)) };
     }
 }
 
@@ -259,8 +248,8 @@ fn show<V: Visitor>(
     }
 }
 
-/// The children that the ray meets, a bit each. Products and differences are rounded together, so
-/// less than planes are thick for.
+/// The children that the ray meets, a bit each: [`meet_avx2`](super::step::meet_avx2) of a ray as single
+/// numbers, since those of all rays of a wave stay in the nearest cache.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
 fn meet(wide: &Wide, slabs: &Slabs, ray: &Ray) -> u32 {

@@ -7,7 +7,7 @@ use super::fill::Chunk;
 use super::{Batch, BatchError, Lists};
 use crate::geometry::{Hit, Ray};
 use crate::trace::hits::{AllHits, Any, Closest, Crossings, FirstHits};
-use crate::trace::stream::{trace, trace_all};
+use crate::trace::stream::trace;
 use crate::trace::traverse::Visitor;
 
 /// Queries of rays. They panic if there are not as many answers, or triangles in
@@ -27,18 +27,8 @@ impl Batch<'_> {
 
     /// Writes to `counts[i]` [how many triangles](crate::Tracer::count_hits) `rays[i]` hits.
     pub fn count_hits(&self, rays: &[Ray], counts: &mut [u32]) -> Result<(), BatchError> {
-        self.check_except(rays);
-        let ask = |chunk: &Chunk<Ray>, counts: &mut [u32]| {
-            counts.fill(0);
-            let begin = |place: usize, ray: &Ray| {
-                let accept = self.accept((chunk.index)(place));
-                ray.is_valid().then(|| Crossings::new(ray, accept))
-            };
-            let end = |index: usize, it: Crossings<_>| counts[index] = it.count() as u32;
-            trace_all(&self.tracer.trip, chunk.queries, begin, end);
-        };
-        let reorder = self.options.reorder;
-        self.fill_chunks(rays, counts, reorder, |ray| self.key_of_ray(ray), ask)
+        let begin = |index: usize, ray: &Ray| Crossings::new(ray, self.accept(index));
+        self.ask(rays, counts, begin, |it| it.count() as u32)
     }
 
     /// Gives `sink` the [first](crate::Tracer::first_hits) `limit` hits of each ray, in the order
@@ -50,18 +40,10 @@ impl Batch<'_> {
         limit: usize,
         sink: impl FnMut(Lists<Hit>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
-        self.check_except(rays);
-        let ask = |first: usize, rays: &[Ray], lists: &mut [Vec<Hit>]| {
-            let lists = RefCell::new(lists);
-            let begin = |index: usize, ray: &Ray| {
-                let list = std::mem::take(&mut lists.borrow_mut()[index]);
-                let asked = limit > 0 && ray.is_valid();
-                asked.then(|| FirstHits::new(ray, limit, self.accept(first + index), list))
-            };
-            let end = |index: usize, it: FirstHits<_>| lists.borrow_mut()[index] = it.hits;
-            trace(&self.tracer.trip, rays, begin, end);
+        let begin = |index: usize, ray: &Ray, list| {
+            (limit > 0).then(|| FirstHits::new(ray, limit, self.accept(index), list))
         };
-        self.stream_groups(rays, ask, sink)
+        self.list(rays, begin, |it| it.hits, sink)
     }
 
     /// Gives `sink` [all hits](crate::Tracer::all_hits) of each ray, as [`Batch::first_hits`].
@@ -70,15 +52,29 @@ impl Batch<'_> {
         rays: &[Ray],
         sink: impl FnMut(Lists<Hit>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
+        let begin =
+            |index: usize, ray: &Ray, list| Some(AllHits::new(ray, self.accept(index), list));
+        self.list(rays, begin, AllHits::in_order, sink)
+    }
+
+    /// Gives `sink` the hits that `hits` makes of the visitor that `begin` gives for each ray and an
+    /// empty list, when it has seen what the ray comes to.
+    fn list<V: Visitor>(
+        &self,
+        rays: &[Ray],
+        begin: impl Fn(usize, &Ray, Vec<Hit>) -> Option<V> + Sync,
+        hits: impl Fn(V) -> Vec<Hit> + Sync,
+        sink: impl FnMut(Lists<Hit>) -> ControlFlow<()>,
+    ) -> Result<(), BatchError> {
         self.check_except(rays);
         let ask = |first: usize, rays: &[Ray], lists: &mut [Vec<Hit>]| {
             let lists = RefCell::new(lists);
             let begin = |index: usize, ray: &Ray| {
                 let list = std::mem::take(&mut lists.borrow_mut()[index]);
-                ray.is_valid().then(|| AllHits::new(ray, self.accept(first + index), list))
+                if ray.is_valid() { begin(first + index, ray, list) } else { None }
             };
-            let end = |index: usize, it: AllHits<_>| lists.borrow_mut()[index] = it.in_order();
-            trace_all(&self.tracer.trip, rays, begin, end);
+            let end = |index: usize, it| lists.borrow_mut()[index] = hits(it);
+            trace(&self.tracer.trip, rays, begin, end);
         };
         self.stream_groups(rays, ask, sink)
     }

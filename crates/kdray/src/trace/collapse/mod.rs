@@ -121,6 +121,7 @@ impl Collapse<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::bounds::{clipped_parts, known_parts};
     use super::*;
     use crate::BuildOptions;
     use crate::trace::block::Block;
@@ -136,6 +137,26 @@ mod tests {
         let near = |k: u32| [k, (k + 1) % 1500, (k * 7 + 2) % 1500];
         let triangles: Vec<[u32; 3]> = (0..1500).map(near).collect();
         Mesh::new(&positions, &triangles).expect("sound")
+    }
+
+    #[test]
+    fn what_the_builder_knows_is_what_clipping_finds() {
+        let mesh = mesh();
+        let tree = Tree::build(&mesh, &BuildOptions::default()).expect("no limits");
+        let known = known_parts(&tree, tree.parts().expect("it was just built"));
+        for (known, found) in known.iter().zip(clipped_parts(&mesh, &tree)) {
+            let is_inner_or_empty = known.is_empty();
+            // Both are larger than the parts by at most some ulps of one.
+            let is_near = |a: f32, b: f32| (a - b).abs() < 1e-5;
+            for axis in 0..3 {
+                assert!(
+                    is_inner_or_empty
+                        || is_near(known.lower[axis], found.lower[axis])
+                            && is_near(known.upper[axis], found.upper[axis]),
+                    "{known:?} {found:?}"
+                );
+            }
+        }
     }
 
     #[test]
