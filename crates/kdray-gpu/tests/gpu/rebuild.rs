@@ -107,7 +107,7 @@ fn check_sequence(frames: &[Mesh]) {
     println!("bytes and allocations: {used:?}");
     assert_eq!(device.compiled(), compiled);
     let (first, last) = (used[1], used[used.len() - 1]);
-    assert!(last[0] <= first[0] + first[0] / 20, "{used:?}");
+    assert!(last[0] <= first[0] + first[0] / 10, "{used:?}");
     assert!(last[1] <= first[1] + 8, "{used:?}");
 }
 
