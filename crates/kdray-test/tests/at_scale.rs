@@ -13,7 +13,7 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use kdray::{Aabb, BuildOptions, Hit, Mesh, Ray, Tracer, Tree, Winding};
+use kdray::{Aabb, BatchOptions, BuildOptions, Hit, Mesh, Ray, Sign, Tracer, Tree, Winding};
 use kdray_test::rays::RayMaker;
 use kdray_test::sieve::Sieve;
 use kdray_test::{oracle, scenes};
@@ -155,12 +155,20 @@ impl Subject {
         rays.len()
     }
 
-    /// Points inside by parity are those around which the mesh winds an odd number of times.
+    /// Points inside by parity are those around which the mesh winds an odd number of times. Many of
+    /// them together are told what each is told alone.
     fn check_inside(&self, count: usize) -> usize {
         let Self { name, mesh, tracer, .. } = self;
         let winding = Winding::new(mesh);
         let mut maker = self.maker(64);
         let points: Vec<[f32; 3]> = (0..count).map(|_| maker.line().origin).collect();
+        let mut together = vec![false; count];
+        let batch = tracer.batch(BatchOptions::default()).expect("no threads are started");
+        batch.contains(&points, Sign::Parity, &mut together).expect("nobody cancels");
+        let alone = points.par_iter().zip(&together);
+        alone.for_each(|(point, told)| {
+            assert_eq!(tracer.contains(*point), *told, "{name}: {point:?}")
+        });
         let is_checked = |point: &&[f32; 3]| {
             let found = tracer.closest_point(**point, f32::INFINITY).expect("there are triangles");
             if f64::from(found.distance) < 1e-6 * reach_of(mesh, **point) {

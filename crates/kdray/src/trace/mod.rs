@@ -41,7 +41,7 @@
 //! `near` visits the leaves around a point, for the queries of `proximity`: `tilt` has second boxes
 //! along the surface, `apart` says how far the triangles of a block are at least and at most, with the
 //! arithmetic of `eights`, and `closest` keeps those that may be the closest. `sign` tells inside from
-//! outside, and `batch` asks many things at once.
+//! outside, `grid` does so cell by cell, and `batch` asks many things at once.
 
 mod apart;
 mod batch;
@@ -49,6 +49,7 @@ mod block;
 mod closest;
 mod collapse;
 mod eights;
+mod grid;
 mod hits;
 mod intersect;
 mod leaves;

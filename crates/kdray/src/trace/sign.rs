@@ -1,6 +1,9 @@
 //! Inside or outside, and distances that say which.
 
+use std::sync::atomic::Ordering::Relaxed;
+
 use super::Tracer;
+use super::grid::Grid;
 use super::hits::Crossings;
 use super::stream::in_packets;
 use crate::geometry::{Aabb, Ray};
@@ -17,6 +20,10 @@ pub enum Sign<'a> {
     /// bridged by where the mesh winds half a time around.
     Winding(&'a Winding),
 }
+
+/// The grid is made when so many points have been asked for every triangle. About then rays have taken
+/// half as long as it takes: sooner, few points would pay for it, and later, many would wait for it.
+const POINTS_PER_TRIANGLE: usize = 2;
 
 impl Sign<'_> {
     pub(super) fn is_inside(self, tracer: &Tracer, point: [f32; 3]) -> bool {
@@ -47,12 +54,38 @@ impl Tracer {
     /// the fewest boxes. `None` for points beyond the bounds, which are outside.
     pub(super) fn way_out(&self, point: [f32; 3]) -> Option<Ray> {
         let Aabb { lower, upper } = self.bounds;
-        let is_within = (0..3).all(|axis| lower[axis] <= point[axis] && point[axis] <= upper[axis]);
         let axis = self.shortest_side();
         let is_below = point[axis] - lower[axis] < upper[axis] - point[axis];
         let mut direction = [0.0; 3];
         direction[axis] = if is_below { -1.0 } else { 1.0 };
-        is_within.then(|| Ray::new(point, direction))
+        self.is_within(&point).then(|| Ray::new(point, direction))
+    }
+
+    /// Whether a point is in the bounds.
+    #[inline]
+    fn is_within(&self, point: &[f32; 3]) -> bool {
+        let Aabb { lower, upper } = &self.bounds;
+        (0..3).all(|axis| lower[axis] <= point[axis] && point[axis] <= upper[axis])
+    }
+
+    /// The grid that tells of most points whether they are inside, if there is one, or if it is worth
+    /// being made, now that so many points more are asked.
+    pub(super) fn grid_for(&self, points: usize) -> Option<&Grid> {
+        let asked = self.points_asked.fetch_add(points, Relaxed).saturating_add(points);
+        if self.grid.get().is_none() && asked >= POINTS_PER_TRIANGLE * self.triangle_count {
+            let made =
+                Grid::new(&self.trip, self.bounds, self.shortest_side(), self.triangle_count);
+            // Threads that come here at the same time all make it: one of a pool that waits takes up
+            // other work, which could be to wait for what it is making.
+            self.grid.get_or_init(|| made);
+        }
+        self.grid.get()?.as_ref()
+    }
+
+    /// Whether a point is [inside](Tracer::contains), if the grid tells.
+    #[inline]
+    pub(super) fn look(&self, grid: &Grid, point: &[f32; 3]) -> Option<bool> {
+        if self.is_within(point) { grid.look(point) } else { Some(false) }
     }
 
     /// The axis along which the bounds are shortest.

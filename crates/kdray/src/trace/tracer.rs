@@ -1,7 +1,9 @@
 //! What a mesh and its tree know for queries.
 
 use std::sync::OnceLock;
+use std::sync::atomic::AtomicUsize;
 
+use super::grid::Grid;
 use super::only::Only;
 use super::prepare::reach;
 use super::simd::Best;
@@ -15,13 +17,18 @@ use crate::tree::Tree;
 ///
 /// Copies triangles in leaf order, eight to a block: [`Tracer::size_bytes`] says what that takes.
 /// The first query for a closest point or for what is within a sphere makes what such queries need
-/// besides: about a sixth more memory, and some milliseconds for 100,000 triangles.
+/// besides: about a sixth more memory, and some milliseconds for 100,000 triangles. Batches that ask
+/// whether many points are inside make a grid of cells of which that is known: four bytes a triangle.
 pub struct Tracer {
     pub(super) trip: Trip,
     pub(super) bounds: Aabb,
     pub(super) triangle_count: usize,
     /// Made when first asked for.
     tilts: OnceLock<Vec<Tilt>>,
+    /// Made when so many points have been asked whether they are inside that it is worth it, if then.
+    pub(super) grid: OnceLock<Option<Grid>>,
+    /// How many have been.
+    pub(super) points_asked: AtomicUsize,
 }
 
 /// What a ray met on its way.
@@ -47,7 +54,14 @@ impl Tracer {
         let bounds = tree.bounds();
         let (layout, reach) = (Layout::new(mesh, tree), reach(&bounds));
         let trip = Trip { layout, reach, simd: Best::detect() };
-        Self { trip, bounds, triangle_count: tree.triangle_count(), tilts: OnceLock::new() }
+        Self {
+            trip,
+            bounds,
+            triangle_count: tree.triangle_count(),
+            tilts: OnceLock::new(),
+            grid: OnceLock::new(),
+            points_asked: AtomicUsize::new(0),
+        }
     }
 
     /// Queries that see only the triangles for which `accept` holds: a visibility mask, or
@@ -128,7 +142,8 @@ impl Tracer {
     #[must_use]
     pub fn size_bytes(&self) -> usize {
         let tilts = self.tilts.get().map_or(0, |tilts| size_of_val(&tilts[..]));
-        self.trip.layout.size_bytes() + tilts
+        let grid = self.grid.get().and_then(Option::as_ref).map_or(0, Grid::size_bytes);
+        self.trip.layout.size_bytes() + tilts + grid
     }
 
     /// What queries of points need besides.

@@ -98,8 +98,21 @@ impl<'a> Meter<'a> {
     pub(super) fn advance(&self, queries: usize) {
         let done = self.done.fetch_add(queries, Ordering::Relaxed) + queries;
         if let Some(report) = self.options.progress {
-            let Range { start, end } = self.share;
-            report(start + (end - start) * (done as f32 / self.total as f32));
+            report(self.fraction(done));
+        }
+    }
+
+    /// The fraction that is done of what the batch is a part of.
+    pub(super) fn so_far(&self) -> f32 {
+        self.fraction(self.done.load(Ordering::Relaxed))
+    }
+
+    fn fraction(&self, done: usize) -> f32 {
+        let Range { start, end } = self.share;
+        if done == self.total {
+            *end
+        } else {
+            start + (end - start) * (done as f32 / self.total as f32)
         }
     }
 }

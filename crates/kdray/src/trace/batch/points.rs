@@ -2,10 +2,14 @@
 
 use std::ops::ControlFlow;
 
+use rayon::prelude::*;
+
 use super::fill::Chunk;
-use super::{Batch, BatchError, Lists};
+use super::options::Meter;
+use super::{Batch, BatchError, CHUNK, Lists};
 use crate::geometry::Aabb;
 use crate::trace::closest::Seeds;
+use crate::trace::grid::Grid;
 use crate::trace::{ClosestPoint, Sign};
 
 /// Queries of points. They panic if there are not as many answers as points, and see every
@@ -46,7 +50,9 @@ impl Batch<'_> {
         Ok(())
     }
 
-    /// Writes to `inside[i]` whether `points[i]` is inside.
+    /// Writes to `inside[i]` whether `points[i]` is inside. By parity, most points are looked up in
+    /// cells of which it is known, as soon as enough have been asked; the answers are those of
+    /// [`Tracer::contains`](crate::Tracer::contains).
     pub fn contains(
         &self,
         points: &[[f32; 3]],
@@ -54,18 +60,57 @@ impl Batch<'_> {
         inside: &mut [bool],
     ) -> Result<(), BatchError> {
         match sign {
-            Sign::Parity => {
-                let ask = |chunk: &Chunk<[f32; 3]>, inside: &mut [bool]| {
-                    self.tracer.contain(chunk.queries, inside);
-                };
-                self.fill_chunks(points, inside, true, |point| self.key_across(point), ask)
-            }
+            Sign::Parity => match self.team.run(|| self.tracer.grid_for(points.len())) {
+                None => self.ask_ways_out(points, inside),
+                Some(grid) => self.look_and_ask(grid, points, inside),
+            },
             Sign::Winding(winding) => {
                 let ask = |(): &mut (), _: usize, point: &[f32; 3]| winding.contains(*point);
                 let reorder = self.options.reorder;
                 self.fill(points, inside, reorder, |point| self.key_of_point(point), ask)
             }
         }
+    }
+
+    /// Writes to `inside[i]` whether `points[i]` is inside, as their rays say.
+    fn ask_ways_out(&self, points: &[[f32; 3]], inside: &mut [bool]) -> Result<(), BatchError> {
+        let ask = |chunk: &Chunk<[f32; 3]>, inside: &mut [bool]| {
+            self.tracer.contain(chunk.queries, inside);
+        };
+        self.fill_chunks(points, inside, true, |point| self.key_across(point), ask)
+    }
+
+    /// The same; rays are asked where the grid does not tell.
+    fn look_and_ask(
+        &self,
+        grid: &Grid,
+        points: &[[f32; 3]],
+        inside: &mut [bool],
+    ) -> Result<(), BatchError> {
+        assert_eq!(points.len(), inside.len(), "one answer a point");
+        let meter = Meter::new(self, points.len());
+        let look = |(chunk, (points, inside)): (usize, (&[[f32; 3]], &mut [bool]))| {
+            meter.check()?;
+            let mut open = Vec::new();
+            for (place, (point, inside)) in points.iter().zip(inside).enumerate() {
+                match self.tracer.look(grid, point) {
+                    Some(answer) => *inside = answer,
+                    None => open.push(chunk * CHUNK + place),
+                }
+            }
+            meter.advance(points.len() - open.len());
+            Ok(open)
+        };
+        let chunks = points.par_chunks(CHUNK).zip(inside.par_chunks_mut(CHUNK)).enumerate();
+        let open: Vec<Vec<usize>> =
+            self.team.run(|| chunks.map(look).collect::<Result<_, BatchError>>())?;
+        let rest: Vec<[f32; 3]> = open.iter().flatten().map(|index| points[*index]).collect();
+        let mut answers = vec![false; rest.len()];
+        self.part(meter.so_far()..self.share.end).ask_ways_out(&rest, &mut answers)?;
+        for (index, answer) in open.into_iter().flatten().zip(answers) {
+            inside[index] = answer;
+        }
+        Ok(())
     }
 
     /// Gives `sink` the [triangles within](crate::Tracer::within_sphere) `radius` of each point,
