@@ -10,16 +10,13 @@ use crate::arrays::zeros;
 use crate::columns::{Columns, Part};
 use crate::error;
 use crate::order::{self, Order};
-use crate::rays::{Rays, blocks};
+use crate::rays::Rays;
 use crate::run::Watch;
 use crate::scene::Scene;
 
 /// Rays that a thread brings into the core's form and asks at a time. They and their hits fit the
 /// nearest cache; the core takes as many for one thread.
 const CHUNK: usize = 1024;
-
-/// Rays whose hits are listed together.
-const BLOCK: usize = 1 << 17;
 
 /// A ray that hits nothing, where one will be.
 const NOTHING: Ray = Ray { origin: [0.0; 3], t_min: 0.0, direction: [0.0; 3], t_max: 0.0 };
@@ -77,21 +74,29 @@ impl Asked<'_, '_> {
     /// The first `limit` hits of every ray, one ray after the other, and where each ray's begin.
     pub(crate) fn all(&self, limit: usize) -> PyResult<(Vec<i64>, Columns)> {
         let mut offsets: Vec<i64> = zeros(self.rays.len() + 1)?;
-        let (mut found, mut local, mut end) = (Vec::new(), Vec::new(), 0);
-        let mut ends = offsets[1..].iter_mut();
-        for block in blocks(self.rays.len(), BLOCK) {
-            let of_block = block.clone().into_par_iter().map(|index| self.rays.get(index));
-            of_block.collect_into_vec(&mut local);
+        let mut found = vec![Vec::new(); self.rays.len().div_ceil(CHUNK)];
+        let parts = offsets[1..].par_chunks_mut(CHUNK).zip(found.par_iter_mut());
+        // Without a limit rays need not go from front to back.
+        let is_limited = limit < self.scene.tree.triangle_count();
+        self.in_chunks(parts, |batch, rays, (counts, found)| {
+            let mut counts = counts.iter_mut();
             let take = |lists: Lists<'_, Hit>| {
-                for (list, offset) in lists.lists().zip(ends.by_ref()) {
-                    end += list.len() as i64;
-                    *offset = end;
+                for (list, count) in lists.lists().zip(counts.by_ref()) {
+                    *count = list.len() as i64;
                 }
-                found.push(lists.items.to_vec());
+                found.extend_from_slice(lists.items);
                 ControlFlow::Continue(())
             };
-            let asked = self.batch(block).and_then(|it| it.first_hits(&local, limit, take));
-            asked.map_err(error::value)?;
+            if is_limited {
+                batch.first_hits(rays, limit, take)
+            } else {
+                batch.all_hits(rays, take)
+            }
+        })?;
+        let mut end = 0;
+        for offset in &mut offsets {
+            end += *offset;
+            *offset = end;
         }
         Ok((offsets, Columns::of_lists(&found)?))
     }

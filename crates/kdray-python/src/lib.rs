@@ -16,6 +16,7 @@ mod gpu;
 mod mesh;
 mod near;
 mod order;
+mod planes;
 mod process;
 mod rays;
 mod render;

@@ -3,8 +3,10 @@
 use numpy::{PyArray2, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 
-use crate::arrays::{flat, zeros};
+use crate::arrays::flat;
+use crate::each::each;
 use crate::error;
+use crate::run::run;
 use crate::tree::{Tree, table};
 
 #[pymethods]
@@ -21,13 +23,8 @@ impl Tree {
         if u.len() != triangle.len() || v.len() != triangle.len() {
             return Err(error::value("arrays of different lengths"));
         }
-        let mut points = zeros(triangle.len())?;
-        for (index, point) in points.iter_mut().enumerate() {
-            let [u, v] = [u[index], v[index]].map(f64::from);
-            *point = self.corners(triangle[index]).map_or([f64::NAN; 3], |[a, b, c]| {
-                [0, 1, 2].map(|axis| (1.0 - u - v) * a[axis] + u * b[axis] + v * c[axis])
-            });
-        }
+        let point = |index| self.point(triangle[index], [u[index], v[index]]);
+        let points = run(py, 0, None, |watch| each(triangle.len(), watch, point))??;
         Ok(table(py, points))
     }
 
@@ -38,11 +35,9 @@ impl Tree {
         triangle: PyReadonlyArrayDyn<'_, i32>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let triangle = flat(&triangle)?;
-        let mut normals = zeros(triangle.len())?;
-        for (index, normal) in normals.iter_mut().enumerate() {
-            let normal_of = |index| self.scene.mesh.normal(index).unwrap_or_default();
-            *normal = self.index(triangle[index]).map_or([f32::NAN; 3], normal_of);
-        }
+        let normal_of = |index| self.scene.mesh.normal(index).unwrap_or_default();
+        let normal = |index| self.index(triangle[index]).map_or([f32::NAN; 3], normal_of);
+        let normals = run(py, 0, None, |watch| each(triangle.len(), watch, normal))??;
         Ok(table(py, normals))
     }
 
@@ -63,7 +58,7 @@ impl Tree {
     }
 
     #[getter]
-    fn triangle_count(&self) -> usize {
+    pub(crate) fn triangle_count(&self) -> usize {
         self.scene.mesh.triangles().len()
     }
 
@@ -81,6 +76,14 @@ impl Tree {
 }
 
 impl Tree {
+    /// World coordinates of a place on a triangle; NaN without one.
+    pub(crate) fn point(&self, triangle: i32, place: [f32; 2]) -> [f64; 3] {
+        let [u, v] = place.map(f64::from);
+        self.corners(triangle).map_or([f64::NAN; 3], |[a, b, c]| {
+            [0, 1, 2].map(|axis| (1.0 - u - v) * a[axis] + u * b[axis] + v * c[axis])
+        })
+    }
+
     /// World coordinates of a triangle's corners, if there is such a triangle.
     fn corners(&self, triangle: i32) -> Option<[[f64; 3]; 3]> {
         let corners = self.scene.mesh.triangle(self.index(triangle)?);

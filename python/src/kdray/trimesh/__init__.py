@@ -21,8 +21,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import trimesh
-from trimesh import proximity
+try:
+    import trimesh
+    from trimesh import proximity
+except ModuleNotFoundError as error:
+    message = f"kdray.trimesh needs {error.name}: pip install kdray[trimesh]"
+    raise ModuleNotFoundError(message, name=error.name) from error
 
 from . import ray_pyembree, ray_triangle
 from ._proximity import ProximityQuery, closest_point, signed_distance

@@ -30,7 +30,7 @@ class ProximityQuery(proximity.ProximityQuery):
 
     def on_surface(self, points: ArrayLike) -> Closest:
         """The closest points of the surface `(m, 3)`, how far they are, and their triangles."""
-        queries = shaped(points, "points")
+        queries = shaped(points, "points").astype(np.float64, copy=False)
         if not np.isfinite(queries).all():
             raise ValueError("points must be finite")
         triangle = self._kdray.tree.closest_point(queries).triangle.astype(np.int64)
@@ -41,7 +41,7 @@ class ProximityQuery(proximity.ProximityQuery):
 
     def signed_distance(self, points: ArrayLike) -> NDArray[np.float64]:
         """Distances `(n,)`, positive inside and on the surface."""
-        queries = shaped(points, "points")
+        queries = shaped(points, "points").astype(np.float64, copy=False)
         distance = self.on_surface(queries)[1]
         outside = (distance > tol.merge) & ~self._kdray.contains(queries)
         return np.where(outside, -distance, distance)

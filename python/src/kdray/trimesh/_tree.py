@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from trimesh import caching
 
-from .._tree import Tree, build
-
-Hits = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]
+from .._build import build
+from .._tree import Tree
 
 
 class MeshTree:
@@ -53,14 +52,26 @@ class Intersector(MeshTree):
         return starts, ways
 
     def _hits(
-        self, origins: ArrayLike, directions: ArrayLike, multiple_hits: bool, max_hits: int | None
-    ) -> Hits:
-        """Triangles, rays and places of hits."""
+        self,
+        origins: ArrayLike,
+        directions: ArrayLike,
+        multiple_hits: bool,
+        max_hits: int | None,
+        with_places: bool,
+    ) -> tuple[NDArray[Any], ...]:
+        """Triangles and rays of hits, and if wanted their places."""
         starts, ways = self._rays(origins, directions)
-        limit = max_hits if multiple_hits else 1
-        hits = self.tree.all_hits(starts, ways, max_hits=limit)
+        tree = self.tree
+        hits = tree.all_hits(starts, ways, max_hits=max_hits if multiple_hits else 1)
         triangle, ray = hits.triangle.astype(np.int64), hits.ray
-        places = self._places(hits.points, triangle, starts[ray], ways[ray])
+        if not with_places:
+            return triangle, ray
+        # In double precision, as trimesh has it; where that is out of reach, what the tree knows.
+        vertices = np.ascontiguousarray(self.mesh.vertices, np.float64)
+        faces = np.ascontiguousarray(self.mesh.faces, np.int64)
+        on = ray, hits.triangle, hits.u, hits.v
+        reach = 1e-5 * float(self.mesh.scale)
+        places = tree._tree.meet_planes((vertices, faces), (starts, ways), on, reach)
         return triangle, ray, places
 
     def _first(self, origins: ArrayLike, directions: ArrayLike) -> NDArray[np.int32]:
@@ -69,28 +80,12 @@ class Intersector(MeshTree):
     def _any(self, origins: ArrayLike, directions: ArrayLike) -> NDArray[np.bool_]:
         return self.tree.any_hit(*self._rays(origins, directions))
 
-    def _places(
-        self,
-        near: NDArray[np.float64],
-        triangle: NDArray[np.int64],
-        origins: NDArray[np.float64],
-        directions: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
-        """Where rays meet the planes of triangles, in double precision, as trimesh has it; the
-        points that are known to be near where that is out of reach."""
-        a, b, c = self.mesh.vertices.view(np.ndarray)[self.mesh.faces[triangle]].transpose(1, 0, 2)
-        normals = np.cross(b - a, c - a)
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            t = ((a - origins) * normals).sum(1) / (directions * normals).sum(1)
-            places = origins + t[:, None] * directions
-            reach = 1e-5 * self.mesh.scale
-            good = (np.abs(places - near) <= reach).all(axis=1)
-        return np.where(good[:, None], places, near)
 
-
-def shaped(value: ArrayLike, name: str) -> NDArray[np.float64]:
-    """`(n, 3)` numbers in double precision."""
-    numbers = np.asanyarray(value, dtype=np.float64)
+def shaped(value: ArrayLike, name: str) -> NDArray[Any]:
+    """`(n, 3)` numbers: those in single precision as they are, others in double."""
+    numbers = np.asarray(value)
+    if numbers.dtype != np.float32:
+        numbers = numbers.astype(np.float64, copy=False)
     if numbers.shape == (0,):
         numbers = numbers.reshape(0, 3)
     if numbers.ndim != 2 or numbers.shape[1] != 3:

@@ -31,7 +31,7 @@ class RayMeshIntersector(Intersector):
         self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple_hits: bool = True
     ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
         """Places `(h, 3)`, rays `(h,)` and triangles `(h,)` of hits."""
-        triangle, ray, places = self._hits(ray_origins, ray_directions, multiple_hits, None)
+        triangle, ray, places = self._hits(ray_origins, ray_directions, multiple_hits, None, True)
         return places, ray, triangle
 
     def intersects_id(
@@ -43,8 +43,8 @@ class RayMeshIntersector(Intersector):
         return_locations: bool = False,
     ) -> tuple[NDArray[Any], ...]:
         """Triangles `(h,)` and rays `(h,)` of hits, and if wanted their places `(h, 3)`."""
-        triangle, ray, places = self._hits(ray_origins, ray_directions, multiple_hits, max_hits)
-        return (triangle, ray, places) if return_locations else (triangle, ray)
+        rays = ray_origins, ray_directions
+        return self._hits(*rays, multiple_hits, max_hits, return_locations)
 
     def intersects_first(
         self, ray_origins: ArrayLike, ray_directions: ArrayLike

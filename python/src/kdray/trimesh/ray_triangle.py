@@ -28,9 +28,8 @@ class RayMeshIntersector(Intersector):
         **kwargs: Any,
     ) -> tuple[NDArray[Any], ...]:
         """Triangles `(h,)` and rays `(h,)` of hits, and if wanted their places `(h, 3)`."""
-        limit = kwargs.get("max_hits")
-        triangle, ray, places = self._hits(ray_origins, ray_directions, multiple_hits, limit)
-        return (triangle, ray, places) if return_locations else (triangle, ray)
+        rays, limit = (ray_origins, ray_directions), kwargs.get("max_hits")
+        return self._hits(*rays, multiple_hits, limit, return_locations)
 
     def intersects_location(
         self, ray_origins: ArrayLike, ray_directions: ArrayLike, **kwargs: Any
