@@ -15,8 +15,9 @@ def public():
             thing = getattr(holder, name)
             if not inspect.ismodule(thing):
                 yield f"{holder.__name__}.{name}", thing
-    for name, member in vars(kdray.Tree).items():
+    for name in dir(kdray.Tree):
         if not name.startswith("_"):
+            member = inspect.getattr_static(kdray.Tree, name)
             yield f"kdray.Tree.{name}", getattr(member, "fget", member)
 
 

@@ -19,9 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _kdray, generate
+from ._build import build
 from ._device import Device, devices
 from ._results import AllHits, ClosestPoints, Hits, Stats, Within
-from ._tree import Tree, build
+from ._tree import Tree
 
 __version__: str = _kdray.__version__
 

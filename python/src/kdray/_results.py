@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-    from ._tree import Tree
+    from ._mesh import OnMesh
 
 
 class _HitsFields(NamedTuple):
@@ -42,13 +42,13 @@ class _OnTriangles:
     triangle: NDArray[np.int32]
     u: NDArray[np.float32]
     v: NDArray[np.float32]
-    _known: tuple[Tree, np.dtype[Any]] | None = None
+    _known: tuple[OnMesh, np.dtype[Any]] | None = None
 
-    def _of(self, tree: Tree, dtype: np.dtype[Any]) -> Self:
+    def _of(self, tree: OnMesh, dtype: np.dtype[Any]) -> Self:
         self._known = tree, dtype
         return self
 
-    def _tree_and_dtype(self) -> tuple[Tree, np.dtype[Any]]:
+    def _tree_and_dtype(self) -> tuple[OnMesh, np.dtype[Any]]:
         if self._known is None:
             raise ValueError("these hits came without their tree")
         return self._known

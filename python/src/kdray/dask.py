@@ -25,10 +25,15 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple, Union
 
-import dask.array as da
 import numpy as np
-from dask.base import tokenize
-from dask.delayed import delayed
+
+try:
+    import dask.array as da
+    from dask.base import tokenize
+    from dask.delayed import delayed
+except ModuleNotFoundError as error:
+    message = f"kdray.dask needs {error.name}: pip install kdray[dask]"
+    raise ModuleNotFoundError(message, name=error.name) from error
 
 from ._results import AllHits, ClosestPoints, Hits
 from ._tree import Tree

@@ -27,7 +27,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._arrays import array, face_rows, vectors, whole
-from ._tree import Tree, build
+from ._build import build
+from ._tree import Tree
 
 __all__ = ["Array", "RaycastingScene"]
 
