@@ -116,7 +116,7 @@ def main() -> None:
     runs.add_argument("meshes", nargs="*", type=Path, help="without any, a generated knot")
     runs.add_argument("-o", "--output", type=Path, required=True)
     runs.add_argument("--rays", type=int, default=1_000_000)
-    runs.add_argument("--points", type=int, default=200_000)
+    runs.add_argument("--points", type=int, default=1_000_000)
     runs.add_argument("--passes", type=int, default=5)
     runs.add_argument("--patience", type=float, default=20.0, help="seconds an engine may take")
     tables = commands.add_parser("table")

@@ -19,7 +19,7 @@ QUERIES = {
     "first hit": 1,
     "bounce": 1,
     "shadow": 1,
-    "all hits": 20,
+    "all hits": 1,
     "inside": 20,
     "closest point": 1000,
     "signed distance": 1000,
