@@ -3,7 +3,8 @@
 use std::convert::Infallible;
 
 use anyhow::Context;
-use kdray_gpu::{Device, Kind, Selection};
+use kdray::Tree;
+use kdray_gpu::{Device, Kind, Selection, Tracer};
 use kdray_render::gpu::RenderError;
 
 /// What `--device` says.
@@ -13,6 +14,12 @@ pub(crate) enum Choice {
     /// A real GPU, or else the CPU.
     Auto,
     Gpu(Selection),
+}
+
+/// Where a tree is: it stays where it was built.
+pub(crate) enum Place<'a> {
+    Cpu(Tree),
+    Gpu(Tracer<'a>),
 }
 
 impl Choice {

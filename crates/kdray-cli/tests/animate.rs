@@ -85,6 +85,11 @@ fn a_gpu_gives_the_same_pictures_and_keeps_its_memory() {
         let [cpu, gpu] = ["cpu", "gpu"].map(|place| format!("{place}/frame_{index:04}.png"));
         assert_alike(&bench.path(&gpu), &bench.path(&cpu));
     }
+    // Trees stay on the device: what goes up in a frame is the mesh, its looks and parameters.
+    for figure in ["uploaded_bytes", "downloaded_bytes"] {
+        let of = |frame: usize| report["frames"][frame][figure].as_u64().expect(figure);
+        assert!(of(1) > of(0) && of(2) - of(1) == of(1) - of(0), "{figure}: {report}");
+    }
     for figure in ["device_bytes", "allocations", "compiled_kernels"] {
         let of = |frame: usize| report["frames"][frame][figure].as_u64().expect(figure);
         assert!(of(0) > 0 && of(0) == of(1) && of(1) == of(2), "{figure}: {report}");

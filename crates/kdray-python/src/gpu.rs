@@ -42,9 +42,9 @@ impl OnGpu {
         mesh: &Mesh,
         options: &BuildOptions<'_>,
     ) -> Result<(kdray::Tree, Self), GpuError> {
-        let tree = kdray_gpu::build(device, mesh, options)?;
-        let on_gpu = Self::new(device, mesh, &tree)?;
-        Ok((tree, on_gpu))
+        let (tracer, _) = Tracer::build(device, mesh, options)?;
+        let tree = tracer.tree(mesh)?;
+        Ok((tree, Self { tracer: Some(tracer), process: process::id() }))
     }
 
     /// What answers there. Drivers do not live on in the child of a fork.

@@ -45,11 +45,11 @@ impl Tree {
                 ..RenderOptions::default()
             };
             let camera = options.camera(self, render_options.aspect());
-            let (mesh, tree) = (&self.scene.mesh, &self.scene.tree);
+            let mesh = &self.scene.mesh;
             match self.gpu.as_ref().and_then(OnGpu::tracer) {
                 Some(tracer) if shading != Shading::Cost => Renderer::new(tracer.device())
                     .map_err(RenderError::from)
-                    .and_then(|mut it| it.render(mesh, tree, &camera, &render_options))
+                    .and_then(|mut it| it.render(tracer, mesh, &camera, &render_options))
                     .map_err(|error| match error {
                         RenderError::Gpu(error) => error::gpu(&error),
                         other => error::value(other),

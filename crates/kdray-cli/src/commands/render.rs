@@ -11,10 +11,10 @@ use clap::{Args, ValueEnum};
 use kdray::{BuildOptions, Mesh, Tracer, Tree};
 use kdray_gpu::Device;
 use kdray_render::gpu::Renderer;
-use kdray_render::{Camera, Picture, RenderOptions, Sky, Sun};
+use kdray_render::{Camera, Picture, RenderOptions, Sky, Sun, render};
 use serde::Serialize;
 
-use crate::device::{Choice, no_picture};
+use crate::device::{Choice, Place, no_picture};
 use crate::progress::Progress;
 use crate::sizes::{PictureSize, count, parse_point};
 use crate::{arguments, atomic, cancel, input, output};
@@ -127,8 +127,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     };
     let device = arguments.device.open()?;
     let device = device.as_ref();
-    let (tree, build_s) = build(&mesh, device, arguments, cancel)?;
-    let (picture, trace_s) = trace(&mesh, &tree, device, arguments, cancel)?;
+    let (place, build_s) = build(&mesh, device, arguments, cancel)?;
+    let (picture, trace_s) = trace(&mesh, &place, arguments, cancel)?;
     atomic::write(&arguments.output, |_, path| Ok(picture.save_png(path)?))?;
     let report = Report {
         mesh: name,
@@ -149,12 +149,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn build(
+fn build<'a>(
     mesh: &Mesh,
-    device: Option<&Device>,
+    device: Option<&'a Device>,
     arguments: &Arguments,
     cancel: &AtomicBool,
-) -> anyhow::Result<(Tree, f64)> {
+) -> anyhow::Result<(Place<'a>, f64)> {
     device.map_or(Ok(()), kdray_gpu::prepare)?;
     let progress = Progress::new("building");
     let options = BuildOptions {
@@ -165,17 +165,16 @@ fn build(
         ..BuildOptions::default()
     };
     let start = Instant::now();
-    let tree = match device {
-        None => Tree::build(mesh, &options)?,
-        Some(device) => kdray_gpu::build(device, mesh, &options)?,
+    let place = match device {
+        None => Place::Cpu(Tree::build(mesh, &options)?),
+        Some(device) => Place::Gpu(kdray_gpu::Tracer::build(device, mesh, &options)?.0),
     };
-    Ok((tree, start.elapsed().as_secs_f64()))
+    Ok((place, start.elapsed().as_secs_f64()))
 }
 
 fn trace(
     mesh: &Mesh,
-    tree: &Tree,
-    device: Option<&Device>,
+    place: &Place,
     arguments: &Arguments,
     cancel: &AtomicBool,
 ) -> anyhow::Result<(Picture, f64)> {
@@ -196,16 +195,20 @@ fn trace(
     let camera = arguments.view.camera(mesh, options.aspect());
     let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.build.threads).build();
     let threads = threads.context("cannot start the threads")?;
-    let Some(device) = device else {
-        let tracer = Tracer::new(mesh, tree);
-        let start = Instant::now();
-        let picture = threads.install(|| kdray_render::render(&tracer, mesh, &camera, &options))?;
-        return Ok((picture, start.elapsed().as_secs_f64()));
-    };
-    let mut renderer = Renderer::new(device)?;
-    let start = Instant::now();
-    let picture = threads.install(|| renderer.render(mesh, tree, &camera, &options));
-    Ok((picture.map_err(no_picture)?, start.elapsed().as_secs_f64()))
+    match place {
+        Place::Cpu(tree) => {
+            let tracer = Tracer::new(mesh, tree);
+            let start = Instant::now();
+            let picture = threads.install(|| render(&tracer, mesh, &camera, &options))?;
+            Ok((picture, start.elapsed().as_secs_f64()))
+        }
+        Place::Gpu(tracer) => {
+            let mut renderer = Renderer::new(tracer.device())?;
+            let start = Instant::now();
+            let picture = threads.install(|| renderer.render(tracer, mesh, &camera, &options));
+            Ok((picture.map_err(no_picture)?, start.elapsed().as_secs_f64()))
+        }
+    }
 }
 
 impl View {

@@ -85,8 +85,4 @@ impl Executor for Twins {
     fn read(&mut self, places: &[(Array, u32)]) -> Result<Vec<u32>, BuildError> {
         Ok(places.iter().map(|(array, place)| self.arrays[*array][*place as usize]).collect())
     }
-
-    fn download(&mut self, array: Array, words: usize) -> Result<Vec<u32>, BuildError> {
-        Ok(self.arrays[array][..words].to_vec())
-    }
 }

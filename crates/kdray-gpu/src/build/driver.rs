@@ -3,7 +3,7 @@
 use std::sync::atomic::Ordering;
 
 use kdray::build::Limits;
-use kdray::{BuildError, BuildOptions, Mesh, Node as TreeNode};
+use kdray::{BuildError, BuildOptions, Mesh};
 
 use super::arrays::Array;
 use super::data::{Best, Event, HEADER, MOST, Node, Pair, Part, Plan, Record, Reference};
@@ -17,22 +17,31 @@ use super::{assign, bear, choose, clip, decide, finish, gather, keep, mark, merg
 use super::{pair, place, price, rank, renew, side, starts, stow, tally};
 use crate::record::Moved;
 
-/// The parts of a finished tree.
-pub(crate) struct Parts {
-    pub(crate) nodes: Vec<TreeNode>,
-    pub(crate) references: Vec<u32>,
+/// How a tree is built; it is the same tree.
+#[derive(Clone, Copy)]
+pub(crate) struct Terms {
+    /// Bytes that the build keeps to as far as single nodes allow.
+    pub(crate) budget: u64,
+    /// Whether teams finish small subtrees.
+    pub(crate) with_teams: bool,
+    /// Whether the mesh stays when the tree is finished.
+    pub(crate) keeps_mesh: bool,
+}
+
+/// A finished tree, in the arrays that its name says.
+pub(crate) struct Finished {
+    /// How many nodes and references it has.
+    pub(crate) counts: [u32; 2],
     pub(crate) levels: Vec<LevelReport>,
 }
 
-/// Builds the tree of `mesh` in about `budget` bytes, as far as single nodes allow. The tree is the
-/// same with teams, which finish small subtrees, and without.
+/// Builds the tree of `mesh`.
 pub(crate) fn build<E: Executor>(
     device: &mut E,
     mesh: &Mesh,
     options: &BuildOptions,
-    budget: u64,
-    with_teams: bool,
-) -> Result<Parts, E::Error> {
+    terms: Terms,
+) -> Result<Finished, E::Error> {
     let limits = Limits::new(mesh, options)?;
     let triangles = mesh.triangles().len() as u32;
     let params = Params {
@@ -46,7 +55,7 @@ pub(crate) fn build<E: Executor>(
         ..Params::default()
     };
     let mesh_bytes = size_of_val(mesh.positions()) + size_of_val(mesh.triangles());
-    let room = budget.saturating_sub(mesh_bytes as u64);
+    let room = terms.budget.saturating_sub(mesh_bytes as u64);
     let (levels, reports) = (Vec::new(), Vec::new());
     let max_depth = limits.max_depth;
     let most_references = triangles;
@@ -59,15 +68,15 @@ pub(crate) fn build<E: Executor>(
         most_references,
         done: 0,
         room,
-        with_teams,
+        terms,
     };
     let root = driver.root(mesh)?;
     driver.levels(root, options)?;
-    let parts = driver.pack()?;
+    let finished = driver.pack()?;
     if let Some(report) = options.progress {
         report(1.0);
     }
-    Ok(parts)
+    Ok(finished)
 }
 
 /// Nodes of one depth.
@@ -104,8 +113,7 @@ pub(super) struct Driver<'a, E> {
     done: u64,
     /// Bytes for everything but the mesh.
     pub(super) room: u64,
-    /// Whether teams finish small subtrees.
-    with_teams: bool,
+    pub(super) terms: Terms,
 }
 
 /// Words of `count` elements.
@@ -256,7 +264,7 @@ impl<E: Executor> Driver<'_, E> {
         let chunks = self.params.event_chunks();
         self.device.reserve(Array::Inner, 2 * level.nodes as usize + 1)?;
         self.device.clear(Array::Inner, 2 * level.nodes as usize + 1)?;
-        if self.params.may_split == 1 && self.with_teams {
+        if self.params.may_split == 1 && self.terms.with_teams {
             self.device.reserve(Array::NextEvents, (PIECE * level.references) as usize)?;
             self.run(&finish::FINISH, level.nodes)?;
         }

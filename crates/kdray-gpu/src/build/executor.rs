@@ -39,6 +39,4 @@ pub(crate) trait Executor {
     fn swap(&mut self, one: Array, other: Array);
     /// Waits for all that was asked for and reads single words.
     fn read(&mut self, places: &[(Array, u32)]) -> Result<Vec<u32>, Self::Error>;
-    /// Waits for all that was asked for and reads the start of an array.
-    fn download(&mut self, array: Array, words: usize) -> Result<Vec<u32>, Self::Error>;
 }

@@ -117,6 +117,23 @@ impl<'a> Gpu<'a> {
         }
     }
 
+    /// Hands an array over, whose memory may come back.
+    pub(crate) fn hand_over(&mut self, array: Array) -> Buffer {
+        let buffer = self.buffers[array as usize].take().expect(RESERVED);
+        self.spare.lend(&buffer);
+        buffer
+    }
+
+    /// Waits for all that was asked for and reads the start of an array.
+    #[cfg(test)]
+    pub(crate) fn download(&mut self, array: Array, words: usize) -> Result<Vec<u32>, GpuError> {
+        self.submit()?;
+        if words == 0 {
+            return Ok(Vec::new());
+        }
+        self.device.read(&self.buffer(array).words(0, words as u64))
+    }
+
     /// Ends the build, and gives what the next one can use.
     pub(crate) fn leave(mut self) -> Spare {
         let left = self.buffers.iter_mut().chain(&mut self.parked).filter_map(Option::take);
@@ -153,7 +170,7 @@ impl<'a> Gpu<'a> {
     }
 
     /// Submits everything noted down.
-    fn submit(&mut self) -> Result<(), GpuError> {
+    pub(crate) fn submit(&mut self) -> Result<(), GpuError> {
         let recording = std::mem::replace(&mut self.recording, Recording::new(self.device));
         self.recording.stage(self.stage.0, self.stage.1);
         match &mut self.profile {
@@ -302,13 +319,5 @@ impl Executor for Gpu<'_> {
         read.truncate(places.len());
         self.spare.counts = Some(words);
         Ok(read)
-    }
-
-    fn download(&mut self, array: Array, words: usize) -> Result<Vec<u32>, GpuError> {
-        self.submit()?;
-        if words == 0 {
-            return Ok(Vec::new());
-        }
-        self.device.read(&self.buffer(array).words(0, words as u64))
     }
 }

@@ -5,7 +5,7 @@ use kdray_test::{Scene, scenes, vulkan};
 
 use super::arrays::Array;
 use super::cpu::Twins;
-use super::driver::build;
+use super::driver::{Terms, build};
 use super::executor::Executor;
 use super::gpu::Gpu;
 use super::kernel::{Kernel, Params};
@@ -121,10 +121,6 @@ impl Executor for Lockstep<'_> {
     fn read(&mut self, places: &[(Array, u32)]) -> Result<Vec<u32>, GpuError> {
         Ok(self.twins.read(places)?)
     }
-
-    fn download(&mut self, array: Array, words: usize) -> Result<Vec<u32>, GpuError> {
-        Ok(self.twins.download(array, words)?)
-    }
 }
 
 fn lavapipe() -> Device {
@@ -143,11 +139,13 @@ fn check(
     with_teams: bool,
 ) -> (Vec<&'static str>, Vec<LevelReport>) {
     let mut lockstep = Lockstep::new(device, name);
-    let parts = build(&mut lockstep, mesh, options, budget, with_teams);
-    let parts = parts.unwrap_or_else(|error| panic!("{name}: {error}"));
-    let nodes: usize = parts.levels.iter().map(|level| level.nodes as usize).sum();
-    assert!(if with_teams { nodes <= parts.nodes.len() } else { nodes == parts.nodes.len() });
-    (lockstep.seen, parts.levels)
+    let terms = Terms { budget, with_teams, keeps_mesh: false };
+    let finished = build(&mut lockstep, mesh, options, terms);
+    let finished = finished.unwrap_or_else(|error| panic!("{name}: {error}"));
+    let nodes: u32 = finished.levels.iter().map(|level| level.nodes).sum();
+    let [all, _] = finished.counts;
+    assert!(if with_teams { nodes <= all } else { nodes == all });
+    (lockstep.seen, finished.levels)
 }
 
 #[test]

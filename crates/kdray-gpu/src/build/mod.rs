@@ -44,6 +44,7 @@ mod rank;
 mod rebuilder;
 mod renew;
 mod report;
+mod resident;
 mod route;
 mod seed;
 mod settle;
@@ -66,9 +67,14 @@ pub use report::{BuildReport, LevelReport};
 #[cfg(test)]
 pub(crate) use subtree::{ROOM, SMALL, WAITING};
 
-use crate::device::Device;
+use crate::device::{Buffer, Device};
 use crate::error::GpuError;
 use crate::primitives::{radix, scan};
+use crate::trace::Packed;
+use arrays::Array;
+use driver::{Finished, Terms};
+use gpu::Gpu;
+use spare::Spare;
 
 /// The parts that the kernels of the build share.
 pub(crate) const PARTS: &[(&str, &str)] = &[
@@ -169,47 +175,70 @@ pub fn build_reported(
     options: &BuildOptions,
     with_profile: bool,
 ) -> Result<(Tree, BuildReport), GpuError> {
-    Ok(build_in(spare::Spare::default, device, mesh, options, with_profile)?.0)
+    let wanted = Wanted { with_profile, keeps_mesh: false };
+    let (left, report, _) = build_in(Spare::default, device, mesh, options, wanted)?;
+    Ok((left.tree.read(device, mesh)?, report))
+}
+
+/// What a build is to give beside the tree.
+#[derive(Clone, Copy)]
+struct Wanted {
+    with_profile: bool,
+    keeps_mesh: bool,
+}
+
+/// What a build leaves on the device.
+struct Left {
+    tree: Packed,
+    /// Positions and triangles, if they were to stay.
+    mesh: Option<[Buffer; 2]>,
 }
 
 /// Builds in the memory that `spare` gives, and hands it on. Where a level took more than was thought,
 /// and more than there is, it starts again and cuts levels into smaller batches.
 fn build_in(
-    mut spare: impl FnMut() -> spare::Spare,
+    mut spare: impl FnMut() -> Spare,
     device: &Device,
     mesh: &Mesh,
     options: &BuildOptions,
-    with_profile: bool,
-) -> Result<((Tree, BuildReport), spare::Spare), GpuError> {
+    wanted: Wanted,
+) -> Result<(Left, BuildReport, Spare), GpuError> {
     let mut room = budget(mesh, options);
     for _ in 0..RETRIES {
         let limits = (options.memory_budget, room);
-        let mut gpu = gpu::Gpu::new(device, spare(), limits, with_profile);
-        match build_on(&mut gpu, mesh, options, room) {
+        let mut gpu = Gpu::new(device, spare(), limits, wanted.with_profile);
+        match build_on(&mut gpu, mesh, options, (room, wanted.keeps_mesh)) {
             Err(error) if error.is_memory() => room = room / 4 * 3,
-            built => return built.map(|built| (built, gpu.leave())),
+            built => return built.map(|(left, report)| (left, report, gpu.leave())),
         }
     }
-    let mut gpu = gpu::Gpu::new(device, spare(), (options.memory_budget, 0), with_profile);
-    build_on(&mut gpu, mesh, options, 0).map(|built| (built, gpu.leave()))
+    let mut gpu = Gpu::new(device, spare(), (options.memory_budget, 0), wanted.with_profile);
+    let (left, report) = build_on(&mut gpu, mesh, options, (0, wanted.keeps_mesh))?;
+    Ok((left, report, gpu.leave()))
 }
 
 fn build_on(
-    gpu: &mut gpu::Gpu,
+    gpu: &mut Gpu,
     mesh: &Mesh,
     options: &BuildOptions,
-    room: u64,
-) -> Result<(Tree, BuildReport), GpuError> {
-    let parts = driver::build(gpu, mesh, options, room, true)?;
-    let tree = Tree::from_parts(mesh, parts.nodes, parts.references, options.cost);
+    (budget, keeps_mesh): (u64, bool),
+) -> Result<(Left, BuildReport), GpuError> {
+    let terms = Terms { budget, with_teams: true, keeps_mesh };
+    let Finished { counts, levels } = driver::build(gpu, mesh, options, terms)?;
+    gpu.submit()?;
+    let [nodes, references] =
+        [Array::TreeNodes, Array::TreeReferences].map(|array| gpu.hand_over(array));
+    let tree = Packed { nodes, references, counts, cost: options.cost };
+    let mesh = [Array::Positions, Array::Triangles];
+    let mesh = keeps_mesh.then(|| mesh.map(|array| gpu.hand_over(array)));
     let report = BuildReport {
         peak_bytes: gpu.peak_bytes,
-        tree_bytes: tree.size_bytes() as u64,
+        tree_bytes: tree.size_bytes(),
         readbacks: gpu.readbacks,
-        levels: parts.levels,
+        levels,
         profile: gpu.profile.take(),
     };
-    Ok((tree, report))
+    Ok((Left { tree, mesh }, report))
 }
 
 /// Compiles the kernels of the build, which would otherwise happen during the first one.
@@ -236,8 +265,11 @@ pub fn build_with_twins(
     with_teams: bool,
 ) -> Result<Tree, BuildError> {
     let mut twins = cpu::Twins::default();
-    let parts = driver::build(&mut twins, mesh, options, budget(mesh, options), with_teams)?;
-    Ok(Tree::from_parts(mesh, parts.nodes, parts.references, options.cost))
+    let terms = Terms { budget: budget(mesh, options), with_teams, keeps_mesh: false };
+    let [nodes, references] = driver::build(&mut twins, mesh, options, terms)?.counts;
+    let nodes = &twins.arrays.of(Array::TreeNodes)[..nodes as usize];
+    let references = &twins.arrays[Array::TreeReferences][..references as usize];
+    Ok(Tree::from_parts(mesh, nodes.to_vec(), references.to_vec(), options.cost))
 }
 
 /// Bytes that the build should keep to.

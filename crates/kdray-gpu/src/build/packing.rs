@@ -1,23 +1,25 @@
 //! The tree, when all levels are done.
 
-use bytemuck::cast_slice;
-
 use super::arrays::Array;
 use super::data::{Extent, Record};
-use super::driver::{Driver, MOST_RECORDS, Parts, too_large, words};
+use super::driver::{Driver, Finished, MOST_RECORDS, too_large, words};
 use super::executor::Executor;
 use super::kernel::Kernel;
 use super::{offset, pack, weigh};
 
-/// What is left when all levels are done.
+/// What the tree is packed from, and what may stay beside it.
 const FINISHED: [Array; 2] = [Array::Records, Array::Finished];
+const MESH: [Array; 2] = [Array::Positions, Array::Triangles];
 
 impl<E: Executor> Driver<'_, E> {
     /// Brings nodes and references into their order.
-    pub(super) fn pack(&mut self) -> Result<Parts, E::Error> {
+    pub(super) fn pack(&mut self) -> Result<Finished, E::Error> {
         let records = self.params.next_records;
         self.device.stage("pack", 0);
-        for array in Array::ALL.into_iter().filter(|array| !FINISHED.contains(array)) {
+        let keeps_mesh = self.terms.keeps_mesh;
+        let stays =
+            |array: &Array| FINISHED.contains(array) || (keeps_mesh && MESH.contains(array));
+        for array in Array::ALL.into_iter().filter(|array| !stays(array)) {
             self.device.free(array);
         }
         self.device.reserve(Array::Extents, words::<Extent>(records))?;
@@ -25,7 +27,7 @@ impl<E: Executor> Driver<'_, E> {
             self.run_over(&weigh::WEIGH, index)?;
         }
         let whole = self.device.read(&[(Array::Extents, 0), (Array::Extents, 1)])?;
-        let (nodes, references) = (whole[0], whole[1] as usize);
+        let [nodes, references] = [whole[0], whole[1]];
         if nodes > MOST_RECORDS {
             return Err(too_large());
         }
@@ -33,12 +35,10 @@ impl<E: Executor> Driver<'_, E> {
             self.run_over(&offset::OFFSET, index)?;
         }
         self.device.reserve(Array::TreeNodes, words::<Record>(nodes))?;
-        self.device.reserve(Array::TreeReferences, references)?;
+        self.device.reserve(Array::TreeReferences, references as usize)?;
         self.run(&pack::PACK, records)?;
-        let nodes = self.device.download(Array::TreeNodes, words::<Record>(nodes))?;
-        let references = self.device.download(Array::TreeReferences, references)?;
         let levels = std::mem::take(&mut self.reports);
-        Ok(Parts { nodes: cast_slice(&nodes).to_vec(), references, levels })
+        Ok(Finished { counts: [nodes, references], levels })
     }
 
     /// Runs a kernel over the records of a level.

@@ -16,6 +16,8 @@ const SMALL_BYTES: u64 = 4096;
 pub(crate) struct Spare {
     /// `None` if there is no next build: then memory is given back at once.
     buffers: Option<Vec<Buffer>>,
+    /// Those that trees are in, and are as long as somebody has them.
+    lent: Vec<Buffer>,
     /// Room for scans, of the largest so far.
     pub(crate) scan: Option<Scan>,
     /// The same for sorts.
@@ -33,6 +35,7 @@ impl Spare {
     /// The smallest buffer of at least `bytes`, unless it is far too large.
     pub(crate) fn take(&mut self, bytes: u64) -> Option<Buffer> {
         let buffers = self.buffers.as_mut()?;
+        buffers.extend(self.lent.extract_if(.., |buffer| !buffer.is_shared()));
         let fits = bytes..=(SLACK * bytes).max(SMALL_BYTES);
         let sizes = buffers.iter().map(Buffer::size_bytes).enumerate();
         let fitting = sizes.filter(|(_, size)| fits.contains(size));
@@ -54,8 +57,16 @@ impl Spare {
         None
     }
 
+    /// Keeps the buffer for when nobody else has it any more.
+    pub(crate) fn lend(&mut self, buffer: &Buffer) {
+        if self.buffers.is_some() {
+            self.lent.push(buffer.clone());
+        }
+    }
+
     /// Gives the memory back.
     pub(crate) fn clear(&mut self) {
+        self.lent.clear();
         if let Some(buffers) = &mut self.buffers {
             buffers.clear();
         }
@@ -63,7 +74,13 @@ impl Spare {
 
     /// Bytes of all that it has.
     pub(crate) fn size_bytes(&self) -> u64 {
-        let buffers = self.buffers.iter().flatten().chain(&self.counts).map(Buffer::size_bytes);
+        let buffers = self
+            .buffers
+            .iter()
+            .flatten()
+            .chain(&self.lent)
+            .chain(&self.counts)
+            .map(Buffer::size_bytes);
         let scan = self.scan.as_ref().map_or(0, Scan::size_bytes);
         buffers.sum::<u64>() + scan + self.sort.as_ref().map_or(0, Sort::size_bytes)
     }

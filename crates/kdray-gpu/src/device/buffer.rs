@@ -127,6 +127,11 @@ impl Buffer {
         Self { owned: self.owned.clone(), offset_bytes, size_bytes: 4 * count }
     }
 
+    /// Whether anybody else has it, or a part of it.
+    pub(crate) fn is_shared(&self) -> bool {
+        Arc::strong_count(&self.owned) > 1
+    }
+
     pub(crate) fn raw(&self) -> &wgpu::Buffer {
         &self.owned.raw
     }
@@ -216,12 +221,12 @@ impl Device {
     /// Writes bytes to the start of a buffer, filled up to whole words with zeros.
     fn fill(&self, buffer: &Buffer, bytes: &[u8]) {
         let (whole, rest) = bytes.split_at(bytes.len() / 4 * 4);
-        self.queue.write_buffer(buffer.raw(), buffer.offset_bytes(), whole);
+        self.bring(buffer.raw(), buffer.offset_bytes(), whole);
         if !rest.is_empty() {
             let mut word = [0; 4];
             word[..rest.len()].copy_from_slice(rest);
             let end = buffer.offset_bytes() + whole.len() as u64;
-            self.queue.write_buffer(buffer.raw(), end, &word);
+            self.bring(buffer.raw(), end, &word);
         }
     }
 
@@ -233,6 +238,6 @@ impl Device {
     pub fn write<T: bytemuck::NoUninit>(&self, buffer: &Buffer, data: &[T]) {
         let bytes: &[u8] = bytemuck::cast_slice(data);
         assert!(bytes.len() as u64 <= buffer.size_bytes(), "{} bytes in {buffer:?}", bytes.len());
-        self.queue.write_buffer(buffer.raw(), buffer.offset_bytes(), bytes);
+        self.bring(buffer.raw(), buffer.offset_bytes(), bytes);
     }
 }

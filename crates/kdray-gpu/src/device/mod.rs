@@ -6,6 +6,7 @@ mod limits;
 mod read;
 #[cfg(test)]
 mod tests;
+mod traffic;
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -14,6 +15,7 @@ pub use adapter::{Adapter, Kind, Selection, devices};
 pub(crate) use buffer::Watch;
 pub use buffer::{Buffer, MemoryUse};
 pub use limits::Limits;
+pub use traffic::Traffic;
 
 use crate::error::GpuError;
 use crate::float::Floats;
@@ -31,6 +33,7 @@ pub struct Device {
     pub(crate) queue: wgpu::Queue,
     failure: Failure,
     memory: Arc<MemoryUse>,
+    traffic: Traffic,
     /// By name and text.
     pub(crate) pipelines: Mutex<HashMap<[&'static str; 2], wgpu::ComputePipeline>>,
     /// What the host reads through, kept for the next time.
@@ -141,6 +144,7 @@ impl Device {
             queue,
             failure,
             memory,
+            traffic: Traffic::default(),
             pipelines: Mutex::default(),
             staging: Mutex::default(),
             parameters: Mutex::default(),
@@ -188,6 +192,12 @@ impl Device {
     #[must_use]
     pub fn memory(&self) -> &MemoryUse {
         &self.memory
+    }
+
+    /// What went between the host and the device.
+    #[must_use]
+    pub fn traffic(&self) -> &Traffic {
+        &self.traffic
     }
 
     /// Fails if anything went wrong since the device was opened.

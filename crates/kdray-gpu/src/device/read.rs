@@ -33,6 +33,7 @@ impl Device {
         let mut data = vec![T::zeroed(); buffer.size_bytes() as usize / size_of::<T>()];
         let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut data);
         assert_eq!(bytes.len() as u64, buffer.size_bytes(), "a whole number of elements");
+        self.traffic.bring_down(buffer.size_bytes());
         let mut staging = lock(&self.staging);
         for (index, chunk) in bytes.chunks_mut(STAGING_BYTES as usize).enumerate() {
             let size = chunk.len() as u64;

@@ -112,7 +112,7 @@ impl Recording<'_> {
                 mapped_at_creation: false,
             })
         });
-        self.device.queue.write_buffer(&params, 0, &self.params);
+        self.device.bring(&params, 0, &self.params);
         params
     }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable};
 
 use super::recipe;
-use super::scene::Scene;
+use super::scene::{Packed, Scene};
 use crate::device::Buffer;
 use crate::record::Binding::{Read, Uniform, Write};
 use crate::record::{Count, Kernel, Moved, Recording, Work};
@@ -108,7 +108,7 @@ impl Rays {
         scene: &Scene,
         answers: &[&Buffer],
     ) {
-        let Scene { nodes, references, positions, triangles, .. } = scene;
+        let Scene { tree: Packed { nodes, references, .. }, positions, triangles, .. } = scene;
         let mut buffers = vec![&self.rays, self.except(), nodes, references, positions, triangles];
         buffers.extend(answers);
         let work = Work::each(&self.number());

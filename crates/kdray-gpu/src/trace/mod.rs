@@ -19,6 +19,7 @@ use kernels::{ANY, LOCATE_MET, MEET, ORDER};
 pub(crate) use kernels::{CLOSEST, LOCATE};
 #[cfg(test)]
 pub(crate) use kernels::{PRIVATE_BYTES, Params};
+pub(crate) use scene::{Packed, Scene};
 
 use crate::record::Kernel;
 

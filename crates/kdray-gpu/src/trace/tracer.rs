@@ -64,6 +64,31 @@ impl<'a> Tracer<'a> {
         device.compile(&[&CLOSEST, &LOCATE, &ANY])
     }
 
+    /// What answers queries over a scene that is on the device.
+    pub(crate) fn over(device: &'a Device, scene: Scene) -> Self {
+        Self { device, scene }
+    }
+
+    /// Reads the tree back, which is that of `mesh`.
+    ///
+    /// # Errors
+    ///
+    /// If the device fails.
+    ///
+    /// # Panics
+    ///
+    /// As [`Tracer::new`].
+    pub fn tree(&self, mesh: &Mesh) -> Result<Tree, GpuError> {
+        self.check_mesh(mesh);
+        self.scene.tree.read(self.device, mesh)
+    }
+
+    /// Panics if `mesh` has another number of triangles than the one on the device.
+    pub fn check_mesh(&self, mesh: &Mesh) {
+        let count = self.scene.triangle_count;
+        assert_eq!(mesh.triangles().len(), count, "the tree is of another mesh");
+    }
+
     /// Takes another mesh and its `tree`, in the memory of those before if there is room.
     ///
     /// # Errors

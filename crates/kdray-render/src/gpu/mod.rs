@@ -20,7 +20,9 @@ mod room;
 mod tests;
 mod wave;
 
-use kdray::{Mesh, Tree};
+use std::ptr;
+
+use kdray::Mesh;
 use kdray_gpu::{Device, GpuError, Tracer};
 
 use crate::scene::Scene;
@@ -52,23 +54,22 @@ pub enum RenderError {
 /// Makes pictures on a device, one after the other in the same memory.
 ///
 /// ```no_run
-/// use kdray::{BuildOptions, Mesh, Tree};
-/// use kdray_gpu::{Device, Limits, Selection};
+/// use kdray::{BuildOptions, Mesh};
+/// use kdray_gpu::{Device, Limits, Selection, Tracer};
 /// use kdray_render::gpu::Renderer;
 /// use kdray_render::{Camera, RenderOptions};
 ///
 /// let mesh = Mesh::new(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]])?;
-/// let tree = Tree::build(&mesh, &BuildOptions::default())?;
 /// let device = Device::open(&Selection::Best, &Limits::PORTABLE)?;
+/// let (tracer, _) = Tracer::build(&device, &mesh, &BuildOptions::default())?;
 /// let mut renderer = Renderer::new(&device)?;
 /// let options = RenderOptions::default();
 /// let camera = Camera::framing(&mesh.bounds(), Camera::Y_UP, options.aspect());
-/// renderer.render(&mesh, &tree, &camera, &options)?.save_png("triangle.png")?;
+/// renderer.render(&tracer, &mesh, &camera, &options)?.save_png("triangle.png")?;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Renderer<'a> {
     device: &'a Device,
-    tracer: Option<Tracer<'a>>,
     looks: Looks,
     room: Option<Room>,
     film: Parts,
@@ -77,6 +78,7 @@ pub struct Renderer<'a> {
 /// A picture that is being made.
 pub struct Exposure<'r, 'a> {
     renderer: &'r mut Renderer<'a>,
+    tracer: &'r Tracer<'a>,
     options: &'r RenderOptions<'r>,
     params: Params,
     /// Samples of each pixel that are on the film.
@@ -93,10 +95,10 @@ impl<'a> Renderer<'a> {
         Tracer::prepare_first_hits(device)?;
         device.compile(KERNELS)?;
         let (looks, film) = (Looks::of_nothing(device)?, Parts::default());
-        Ok(Self { device, tracer: None, looks, room: None, film })
+        Ok(Self { device, looks, room: None, film })
     }
 
-    /// The picture that [`render`](crate::render) makes, up to roundings.
+    /// The picture that [`render`](crate::render) makes of the tracer's mesh, up to roundings.
     ///
     /// # Errors
     ///
@@ -107,17 +109,17 @@ impl<'a> Renderer<'a> {
     /// As [`Renderer::begin`].
     pub fn render(
         &mut self,
+        tracer: &Tracer<'a>,
         mesh: &Mesh,
-        tree: &Tree,
         camera: &Camera,
         options: &RenderOptions,
     ) -> Result<Picture, RenderError> {
-        let mut exposure = self.begin(mesh, tree, camera, options)?;
+        let mut exposure = self.begin(tracer, mesh, camera, options)?;
         while exposure.advance()? {}
         exposure.picture()
     }
 
-    /// Brings a scene to the device, for a picture whose samples are taken step by step.
+    /// Brings the looks of a scene to the device, for a picture whose samples are taken step by step.
     ///
     /// # Errors
     ///
@@ -125,23 +127,21 @@ impl<'a> Renderer<'a> {
     ///
     /// # Panics
     ///
-    /// If the tree is of another number of triangles.
+    /// If the tracer is on another device, or its mesh has another number of triangles.
     pub fn begin<'r>(
         &'r mut self,
+        tracer: &'r Tracer<'a>,
         mesh: &Mesh,
-        tree: &Tree,
         camera: &Camera,
         options: &'r RenderOptions<'r>,
     ) -> Result<Exposure<'r, 'a>, RenderError> {
+        assert!(ptr::eq(tracer.device(), self.device), "the tracer is on another device");
+        tracer.check_mesh(mesh);
         if options.shading == Shading::Cost {
             return Err(RenderError::Cost);
         }
         let scene = Scene::new(mesh, camera, options);
         options.check_cancelled()?;
-        match &mut self.tracer {
-            Some(tracer) => tracer.replace(mesh, tree)?,
-            None => self.tracer = Some(Tracer::new(self.device, mesh, tree)?),
-        }
         self.looks.replace(self.device, &scene)?;
         let pixels = u64::from(options.width) * u64::from(options.height);
         self.film.darken(self.device, pixels)?;
@@ -151,7 +151,7 @@ impl<'a> Renderer<'a> {
             self.room = Some(Room::new(self.device, paths)?);
         }
         let params = Params::of(&scene, camera, options);
-        Ok(Exposure { renderer: self, options, params, done: 0 })
+        Ok(Exposure { renderer: self, tracer, options, params, done: 0 })
     }
 }
 
@@ -163,8 +163,7 @@ impl Exposure<'_, '_> {
     /// If the picture is cancelled, or the device fails.
     pub fn advance(&mut self) -> Result<bool, RenderError> {
         let Params { width, height, samples, .. } = self.params;
-        let Renderer { tracer: Some(tracer), looks, room: Some(room), film, .. } = &*self.renderer
-        else {
+        let Renderer { looks, room: Some(room), film, .. } = &*self.renderer else {
             return Ok(false);
         };
         let pixels = width * height;
@@ -183,7 +182,7 @@ impl Exposure<'_, '_> {
                 samples_here,
                 ..self.params
             };
-            let wave = Wave { tracer, looks, room, params, pixels: count };
+            let wave = Wave { tracer: self.tracer, looks, room, params, pixels: count };
             wave.expose(film.part(part), self.options)?;
             first += count;
             if let Some(progress) = self.options.progress {

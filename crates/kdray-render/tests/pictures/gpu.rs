@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock};
 
 use kdray::{BuildOptions, Mesh, Tree};
-use kdray_gpu::{Device, Limits, Selection};
+use kdray_gpu::{Device, Limits, Rebuilder, Selection, Tracer};
 use kdray_mesh::generate;
 use kdray_render::gpu::{RenderError, Renderer};
 use kdray_render::{Camera, Picture, RenderOptions, Shading, Sky};
@@ -24,21 +24,24 @@ fn lavapipe() -> &'static Device {
     DEVICE.get_or_init(|| open(vulkan::LAVAPIPE))
 }
 
+/// Renders as `on_cpu` does, over a tree of the CPU's.
 fn on(device: &Device, mesh: &Mesh, options: &RenderOptions) -> Result<Picture, RenderError> {
-    Renderer::new(device)?.picture_of(mesh, options)
+    let tracer = Tracer::new(device, mesh, &tree(mesh))?;
+    picture_of(&mut Renderer::new(device)?, &tracer, mesh, options)
 }
 
-/// Renders as `on_cpu` does.
-trait PictureOf {
-    fn picture_of(&mut self, mesh: &Mesh, options: &RenderOptions) -> Result<Picture, RenderError>;
+fn tree(mesh: &Mesh) -> Tree {
+    Tree::build(mesh, &BuildOptions::default()).expect("nothing limits the build")
 }
 
-impl PictureOf for Renderer<'_> {
-    fn picture_of(&mut self, mesh: &Mesh, options: &RenderOptions) -> Result<Picture, RenderError> {
-        let tree = Tree::build(mesh, &BuildOptions::default()).expect("nothing limits the build");
-        let camera = Camera::framing_mesh(mesh, Camera::Y_UP, options.aspect());
-        self.render(mesh, &tree, &camera, options)
-    }
+fn picture_of<'a>(
+    renderer: &mut Renderer<'a>,
+    tracer: &Tracer<'a>,
+    mesh: &Mesh,
+    options: &RenderOptions,
+) -> Result<Picture, RenderError> {
+    let camera = Camera::framing_mesh(mesh, Camera::Y_UP, options.aspect());
+    renderer.render(tracer, mesh, &camera, options)
 }
 
 #[test]
@@ -105,17 +108,22 @@ fn another_driver_makes_the_same_pictures() {
     }
 }
 
-/// Memory is kept from picture to picture, also where a scene or picture is smaller in between.
+/// Memory is kept from picture to picture, also where a scene or picture is smaller in between. Trees
+/// are built on the device and stay there: what goes up is mesh, looks and parameters.
 #[test]
 fn a_renderer_keeps_its_memory_and_nothing_else() {
     let device = open(vulkan::LAVAPIPE);
+    let mut rebuilder = Rebuilder::new(&device).expect("the kernels compile");
     let mut renderer = Renderer::new(&device).expect("the kernels compile");
     let meshes = [generate::sphere(4), generate::cube(), generate::sphere(4)];
     let mut taken = Vec::new();
     for (mesh, width) in meshes.map(|mesh| mesh.mesh().expect("finite")).iter().zip([90, 40, 90]) {
         let options = RenderOptions { width, samples: Some(3), ..small(Shading::Path) };
-        let picture = renderer.picture_of(mesh, &options).expect("nothing fails");
+        let (tracer, _) = rebuilder.build(mesh, &BuildOptions::default()).expect("it fits");
+        let picture = picture_of(&mut renderer, &tracer, mesh, &options).expect("nothing fails");
         assert_alike(&picture, &on_cpu(mesh, &options), "after another one");
+        // The very picture of a tree that was brought there.
+        assert_eq!(picture.pixels, on(lavapipe(), mesh, &options).expect("nothing fails").pixels);
         let memory = device.memory();
         taken.push((memory.bytes(), memory.allocations(), device.compiled()));
     }
@@ -140,7 +148,7 @@ fn large_pictures_are_seamless() {
 #[test]
 fn a_picture_can_be_looked_at_while_it_is_made() {
     let mesh = generate::showcase(3000).mesh().expect("finite");
-    let tree = Tree::build(&mesh, &BuildOptions::default()).expect("nothing limits the build");
+    let tracer = Tracer::new(lavapipe(), &mesh, &tree(&mesh)).expect("it fits");
     // A wave has room for nine samples of each pixel.
     let options = RenderOptions {
         width: 128,
@@ -152,7 +160,7 @@ fn a_picture_can_be_looked_at_while_it_is_made() {
     };
     let camera = Camera::framing_mesh(&mesh, Camera::Y_UP, options.aspect());
     let mut renderer = Renderer::new(lavapipe()).expect("the kernels compile");
-    let mut exposure = renderer.begin(&mesh, &tree, &camera, &options).expect("it fits");
+    let mut exposure = renderer.begin(&tracer, &mesh, &camera, &options).expect("it fits");
     let mut pictures = Vec::new();
     while exposure.advance().expect("nothing fails") {
         pictures.push(exposure.picture().expect("nothing fails"));

@@ -15,11 +15,11 @@ use clap::Args;
 use kdray::{Mesh, Tracer};
 use kdray_mesh::Sequence;
 use kdray_render::gpu::Renderer;
-use kdray_render::{Picture, RenderOptions};
+use kdray_render::{Camera, Picture, RenderOptions};
 use serde::Serialize;
 
 use crate::commands::render::{Shading, View};
-use crate::device::{Choice, no_picture};
+use crate::device::{Choice, Place, no_picture};
 use crate::progress::Progress;
 use crate::sizes::{PictureSize, bytes, count};
 use crate::{arguments, cancel, output};
@@ -80,12 +80,12 @@ struct Report {
 #[derive(Serialize)]
 struct FrameReport {
     build_s: f64,
-    /// The tracer's layout, or bringing the scene to the device, and the picture.
+    /// The tracer's layout on the CPU, or bringing normals and colours to the device, and the picture.
     trace_s: f64,
     frames_per_s: f64,
     /// The most memory that the build had.
     peak_bytes: u64,
-    tree_bytes: usize,
+    tree_bytes: u64,
     rays: u64,
     #[serde(flatten)]
     device: Option<DeviceMemory>,
@@ -123,15 +123,15 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn frame(
+fn frame<'a>(
     mesh: &Mesh,
-    builder: &mut Builder,
-    renderer: Option<&mut Renderer>,
+    builder: &mut Builder<'a>,
+    renderer: Option<&mut Renderer<'a>>,
     stage: &view::Stage,
     arguments: &Arguments,
     cancel: &AtomicBool,
 ) -> anyhow::Result<(Picture, FrameReport)> {
-    let Built { tree, build_s, peak_bytes } = builder.build(mesh)?;
+    let Built { place, build_s, peak_bytes, tree_bytes } = builder.build(mesh)?;
     let options = RenderOptions {
         width: arguments.size.width,
         height: arguments.size.height,
@@ -142,24 +142,40 @@ fn frame(
         ..RenderOptions::default()
     };
     let start = Instant::now();
-    let camera = stage.camera(mesh);
-    // What rays cost is asked of the tracer on the CPU.
-    let renderer = renderer.filter(|_| options.shading != kdray_render::Shading::Cost);
-    let picture = match renderer {
-        None => kdray_render::render(&Tracer::new(mesh, &tree), mesh, &camera, &options)?,
-        Some(renderer) => renderer.render(mesh, &tree, &camera, &options).map_err(no_picture)?,
-    };
+    let picture = picture(mesh, &place, renderer, (&stage.camera(mesh), &options))?;
     let trace_s = start.elapsed().as_secs_f64();
     let report = FrameReport {
         build_s,
         trace_s,
         frames_per_s: 1.0 / (build_s + trace_s).max(1e-9),
         peak_bytes,
-        tree_bytes: tree.size_bytes(),
+        tree_bytes,
         rays: picture.rays,
         device: builder.device_memory(),
     };
     Ok((picture, report))
+}
+
+/// A picture of the mesh, made where its tree is; but what rays cost is asked of the tracer on the CPU.
+fn picture<'a>(
+    mesh: &Mesh,
+    place: &Place<'a>,
+    renderer: Option<&mut Renderer<'a>>,
+    (camera, options): (&Camera, &RenderOptions),
+) -> anyhow::Result<Picture> {
+    let renderer = renderer.filter(|_| options.shading != kdray_render::Shading::Cost);
+    let read;
+    let tree = match (place, renderer) {
+        (Place::Gpu(tracer), Some(renderer)) => {
+            return renderer.render(tracer, mesh, camera, options).map_err(no_picture);
+        }
+        (Place::Gpu(tracer), None) => {
+            read = tracer.tree(mesh)?;
+            &read
+        }
+        (Place::Cpu(tree), _) => tree,
+    };
+    Ok(kdray_render::render(&Tracer::new(mesh, tree), mesh, camera, options)?)
 }
 
 impl Report {

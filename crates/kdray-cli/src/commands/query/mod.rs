@@ -239,8 +239,8 @@ fn ask_gpu(
     kdray_gpu::prepare(device)?;
     let (start, progress) = (Instant::now(), Progress::new("building"));
     let report = |fraction| progress.set(fraction);
-    let tree = kdray_gpu::build(device, mesh, &build_options(arguments, &report, cancel))?;
-    let tracer = kdray_gpu::Tracer::new(device, mesh, &tree)?;
+    let options = build_options(arguments, &report, cancel);
+    let (tracer, _) = kdray_gpu::Tracer::build(device, mesh, &options)?;
     let build_s = start.elapsed().as_secs_f64();
     tracer.prepare()?;
     let progress = Progress::new("asking");
@@ -254,7 +254,7 @@ fn ask_gpu(
     let profile = match queries {
         ask::Queries::Rays(rays) if arguments.profile => {
             let threads = arguments::resolved_threads(arguments.threads);
-            Some(Profile::of(&batch, (mesh, &tree), rays, (seconds[0], threads))?)
+            Some(Profile::of(&batch, (mesh, &tracer.tree(mesh)?), rays, (seconds[0], threads))?)
         }
         _ => None,
     };
