@@ -20,7 +20,9 @@ pub(crate) fn zeros_in_huge_pages<T: bytemuck::Zeroable>(count: usize) -> Vec<T>
     vector
 }
 
-/// Asks for huge pages within the bytes at `start`, before they are first used.
+/// Asks for huge pages within the bytes at `start`, which are zeros or were never used.
+///
+/// An allocator may give memory that was used before, in small pages: these are given back first.
 #[cfg(target_os = "linux")]
 fn advise_huge_pages(start: *const u8, bytes: usize) {
     let padding = start.align_offset(HUGE_PAGE);
@@ -28,10 +30,30 @@ fn advise_huge_pages(start: *const u8, bytes: usize) {
         return;
     }
     let bytes = (bytes - padding) / HUGE_PAGE * HUGE_PAGE;
-    // SAFETY: the pages lie inside an allocation, and the advice does not change what they hold.
-    // That the system may not follow it is no error.
-    unsafe { libc::madvise(start.add(padding).cast_mut().cast(), bytes, libc::MADV_HUGEPAGE) };
+    // That the system may not follow advice is no error.
+    for advice in [libc::MADV_HUGEPAGE, libc::MADV_DONTNEED] {
+        // SAFETY: the pages lie inside an allocation. What they hold may become zeros, which it is
+        // already if it is anything.
+        unsafe { libc::madvise(start.add(padding).cast_mut().cast(), bytes, advice) };
+    }
 }
 
 #[cfg(not(target_os = "linux"))]
 fn advise_huge_pages(_start: *const u8, _bytes: usize) {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_that_was_used_before_is_zeros_again() {
+        const COUNT: usize = 3 * HUGE_PAGE / size_of::<u32>();
+        for round in 1..20 {
+            let used = vec![round; COUNT];
+            assert_eq!(used[COUNT - 1], round);
+            drop(used);
+            let zeros: Vec<u32> = zeros_in_huge_pages(COUNT);
+            assert!(zeros.iter().all(|number| *number == 0), "round {round}");
+        }
+    }
+}
