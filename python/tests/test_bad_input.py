@@ -134,6 +134,22 @@ class TestPoints:
         assert (answer.distance if query == "closest_point" else answer).shape == (0,)
 
 
+HUGE = np.broadcast_to(np.float64(0), (1 << 58, 3))
+ASKED = {
+    **{query: (HUGE, [0.0, 0, 1]) for query in RAY_QUERIES},
+    **dict.fromkeys(POINT_QUERIES, (HUGE,)),
+    "within_sphere": (HUGE, 1.0),
+    "within_box": (HUGE, HUGE),
+}
+
+
+@pytest.mark.parametrize("query", ASKED)
+def test_more_than_there_is_memory_for(sphere, query):
+    """The question takes none; the answer must not end the process."""
+    with pytest.raises(MemoryError):
+        getattr(sphere, query)(*ASKED[query])
+
+
 def test_distances_and_radii(sphere):
     for bad in (-1.0, np.nan):
         with pytest.raises(ValueError, match="max_distance"):

@@ -17,7 +17,7 @@ def public():
                 yield f"{holder.__name__}.{name}", thing
     for name in dir(kdray.Tree):
         if not name.startswith("_"):
-            member = inspect.getattr_static(kdray.Tree, name)
+            member = getattr(kdray.Tree, name)
             yield f"kdray.Tree.{name}", getattr(member, "fget", member)
 
 

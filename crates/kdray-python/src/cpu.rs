@@ -25,6 +25,10 @@ const NOTHING: Ray = Ray { origin: [0.0; 3], t_min: 0.0, direction: [0.0; 3], t_
 /// cache worse.
 const WINDOW: usize = 64 * CHUNK;
 
+/// The most rays whose hits are listed together. What the lists of some rays have taken is there for
+/// those of the next.
+const LISTED: usize = 16 * CHUNK;
+
 /// Rays, and what answers them.
 pub(crate) struct Asked<'a, 'r> {
     pub(crate) rays: &'a Rays<'r>,
@@ -73,12 +77,16 @@ impl Asked<'_, '_> {
 
     /// The first `limit` hits of every ray, one ray after the other, and where each ray's begin.
     pub(crate) fn all(&self, limit: usize) -> PyResult<(Vec<i64>, Columns)> {
+        let size = self.share(LISTED);
         let mut offsets: Vec<i64> = zeros(self.rays.len() + 1)?;
-        let mut found = vec![Vec::new(); self.rays.len().div_ceil(CHUNK)];
-        let parts = offsets[1..].par_chunks_mut(CHUNK).zip(found.par_iter_mut());
+        let mut found = vec![Vec::new(); self.rays.len().div_ceil(size)];
+        let parts = offsets[1..].par_chunks_mut(size).zip(found.par_iter_mut());
         // Without a limit rays need not go from front to back.
         let is_limited = limit < self.scene.tree.triangle_count();
-        self.in_chunks(parts, |batch, rays, (counts, found)| {
+        let list = |(part, (counts, found)): (usize, (&mut [i64], &mut Vec<Hit>))| {
+            let range = self.range(size, part);
+            let rays: Vec<Ray> = range.clone().map(|index| self.rays.get(index)).collect();
+            let batch = self.batch(range)?;
             let mut counts = counts.iter_mut();
             let take = |lists: Lists<'_, Hit>| {
                 for (list, count) in lists.lists().zip(counts.by_ref()) {
@@ -88,11 +96,12 @@ impl Asked<'_, '_> {
                 ControlFlow::Continue(())
             };
             if is_limited {
-                batch.first_hits(rays, limit, take)
+                batch.first_hits(&rays, limit, take)
             } else {
-                batch.all_hits(rays, take)
+                batch.all_hits(&rays, take)
             }
-        })?;
+        };
+        parts.enumerate().try_for_each(list).map_err(|error: BatchError| error::value(error))?;
         let mut end = 0;
         for offset in &mut offsets {
             end += *offset;
@@ -106,9 +115,14 @@ impl Asked<'_, '_> {
     fn window(&self) -> Option<usize> {
         let sees_all = self.rays.mask.is_none() && self.rays.except(0..0).is_none();
         let pays = sees_all && order::pays(self.rays, self.scene.tree.bounds());
-        // Some for each thread, so that all end at about the same time.
+        pays.then(|| self.share(WINDOW))
+    }
+
+    /// Rays that a thread takes at a time, whole chunks of them: some times for each thread, so that
+    /// all end at about the same time, and no more than `most`.
+    fn share(&self, most: usize) -> usize {
         let share = self.rays.len() / (8 * rayon::current_num_threads());
-        pays.then(|| share.next_multiple_of(CHUNK).clamp(CHUNK, WINDOW))
+        share.next_multiple_of(CHUNK).clamp(CHUNK, most)
     }
 
     /// Lets `ask` answer the rays chunk by chunk. There is a part of the answers for each.

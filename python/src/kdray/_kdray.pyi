@@ -81,7 +81,13 @@ class Tree:
         self,
         mesh: tuple[NDArray[np.float64], NDArray[np.int64]],
         rays: tuple[Floats, Floats],
-        hits: tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float32], NDArray[np.float32]],
+        hits: tuple[
+            NDArray[np.int64],
+            NDArray[np.float32],
+            NDArray[np.int32],
+            NDArray[np.float32],
+            NDArray[np.float32],
+        ],
         reach: float,
     ) -> NDArray[np.float64]: ...
     def normals(self, triangle: NDArray[np.int32]) -> NDArray[np.float32]: ...

@@ -69,7 +69,7 @@ class Intersector(MeshTree):
         # In double precision, as trimesh has it; where that is out of reach, what the tree knows.
         vertices = np.ascontiguousarray(self.mesh.vertices, np.float64)
         faces = np.ascontiguousarray(self.mesh.faces, np.int64)
-        on = ray, hits.triangle, hits.u, hits.v
+        on = ray, hits.t, hits.triangle, hits.u, hits.v
         reach = 1e-5 * float(self.mesh.scale)
         places = tree._tree.meet_planes((vertices, faces), (starts, ways), on, reach)
         return triangle, ray, places

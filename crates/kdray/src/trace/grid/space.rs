@@ -83,7 +83,7 @@ impl Space {
         };
         let below = point[along] - lower[along];
         let above = upper[along] - point[along];
-        let is_above = !(below < above);
+        let is_above = above <= below;
         let x = at(0, point[across] - lower[across]);
         let y = at(1, point[other] - lower[other]);
         self.column([x, y], is_above) + at(2, if is_above { above } else { below })
