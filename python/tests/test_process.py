@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import kdray
-from conftest import cube, icosphere, random_rays, soup
+from conftest import icosphere, random_rays, soup
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 

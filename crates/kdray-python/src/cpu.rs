@@ -25,8 +25,8 @@ const NOTHING: Ray = Ray { origin: [0.0; 3], t_min: 0.0, direction: [0.0; 3], t_
 /// cache worse.
 const WINDOW: usize = 64 * CHUNK;
 
-/// The most rays whose hits are listed together. What the lists of some rays have taken is there for
-/// those of the next.
+/// The most rays whose hits are listed together. What the lists of some rays have taken is there
+/// for those of the next.
 const LISTED: usize = 16 * CHUNK;
 
 /// Rays, and what answers them.
@@ -118,8 +118,8 @@ impl Asked<'_, '_> {
         pays.then(|| self.share(WINDOW))
     }
 
-    /// Rays that a thread takes at a time, whole chunks of them: some times for each thread, so that
-    /// all end at about the same time, and no more than `most`.
+    /// Rays that a thread takes at a time, whole chunks of them: some times for each thread, so
+    /// that all end at about the same time, and no more than `most`.
     fn share(&self, most: usize) -> usize {
         let share = self.rays.len() / (8 * rayon::current_num_threads());
         share.next_multiple_of(CHUNK).clamp(CHUNK, most)

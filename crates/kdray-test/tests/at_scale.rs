@@ -155,8 +155,8 @@ impl Subject {
         rays.len()
     }
 
-    /// Points inside by parity are those around which the mesh winds an odd number of times. Many of
-    /// them together are told what each is told alone.
+    /// Points inside by parity are those around which the mesh winds an odd number of times. Many
+    /// of them together are told what each is told alone.
     fn check_inside(&self, count: usize) -> usize {
         let Self { name, mesh, tracer, .. } = self;
         let winding = Winding::new(mesh);

@@ -1,4 +1,5 @@
-//! Whether points are inside, asked together: by cells without a surface, and by rays in the others.
+//! Whether points are inside, asked together: by cells without a surface, and by rays in the
+//! others.
 
 use kdray::{BatchOptions, BuildOptions, Sign, Tracer, Tree};
 use kdray_mesh::generate::sphere;

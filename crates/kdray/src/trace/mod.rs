@@ -10,8 +10,8 @@
 //!   of the triangles there, and only one.
 //! * Hence a whole line, `t` from minus to plus infinity, crosses a closed mesh an even number of
 //!   times, whatever edges, vertices and flat faces lie in its way: along the axes, in the planes
-//!   of the tree, through slivers. A mesh is closed if every edge, by the positions of its ends, has
-//!   an even number of triangles. It may intersect itself and be wound in any way.
+//!   of the tree, through slivers. A mesh is closed if every edge, by the positions of its ends,
+//!   has an even number of triangles. It may intersect itself and be wound in any way.
 //! * [`Tracer::all_hits`] has every crossing once, in order of `t` and then of the triangle, and
 //!   each is exactly the hit that [`intersect`](intersect()) gives for its triangle.
 //!
@@ -30,18 +30,18 @@
 //!
 //! # Parts
 //!
-//! `collapse` lays the tree out in the nodes of eight boxes of `wide`; `prepare` makes of a ray what
-//! traversal needs; `traverse` visits the leaves along it from front to back, `walk`ing `step` by
-//! `step`, and `stream` does so for several rays at a time, some of them as a `packet` or a `wave`. `block` filters the triangles of a leaf
-//! eight at a time, and `simd` says with which instructions, those of NEON in `neon`; `vector` is
-//! arithmetic on eight or sixteen numbers, and `sift` says by it which triangles may be hit.
-//! `intersect` says for one triangle what a hit is: it is the definition that everything else is
-//! tested against. `hits` keeps what the queries want of the hits. `leaves` is the same visit for
-//! whoever asks, in strict order.
-//! `near` visits the leaves around a point, for the queries of `proximity`: `tilt` has second boxes
-//! along the surface, `apart` says how far the triangles of a block are at least and at most, with the
-//! arithmetic of `eights`, and `closest` keeps those that may be the closest. `sign` tells inside from
-//! outside, `grid` does so cell by cell, and `batch` asks many things at once.
+//! `collapse` lays the tree out in the nodes of eight boxes of `wide`; `prepare` makes of a ray
+//! what traversal needs; `traverse` visits the leaves along it from front to back, `walk`ing `step`
+//! by `step`, and `stream` does so for several rays at a time, some of them as a `packet` or a
+//! `wave`. `block` filters the triangles of a leaf eight at a time, and `simd` says with which
+//! instructions, those of NEON in `neon`; `vector` is arithmetic on eight or sixteen numbers, and
+//! `sift` says by it which triangles may be hit. `intersect` says for one triangle what a hit is:
+//! it is the definition that everything else is tested against. `hits` keeps what the queries want
+//! of the hits. `leaves` is the same visit for whoever asks, in strict order. `near` visits the
+//! leaves around a point, for the queries of `proximity`: `tilt` has second boxes along the
+//! surface, `apart` says how far the triangles of a block are at least and at most, with the
+//! arithmetic of `eights`, and `closest` keeps those that may be the closest. `sign` tells inside
+//! from outside, `grid` does so cell by cell, and `batch` asks many things at once.
 
 mod apart;
 mod batch;

@@ -21,8 +21,9 @@ pub enum Sign<'a> {
     Winding(&'a Winding),
 }
 
-/// The grid is made when so many points have been asked for every triangle. About then rays have taken
-/// half as long as it takes: sooner, few points would pay for it, and later, many would wait for it.
+/// The grid is made when so many points have been asked for every triangle. About then rays have
+/// taken half as long as it takes: sooner, few points would pay for it, and later, many would wait
+/// for it.
 const POINTS_PER_TRIANGLE: usize = 2;
 
 impl Sign<'_> {
@@ -41,17 +42,17 @@ impl Sign<'_> {
 
 impl Tracer {
     /// Whether `point` is inside: whether a line from it to infinity crosses the surface an odd
-    /// number of times. The line goes along the shortest side of the bounds, to the nearer end; points
-    /// beyond the bounds are outside. Right for every closed mesh, because every crossing counts exactly once;
-    /// for a mesh that is not closed there is no right answer, and points on the surface may get
-    /// either.
+    /// number of times. The line goes along the shortest side of the bounds, to the nearer end;
+    /// points beyond the bounds are outside. Right for every closed mesh, because every crossing
+    /// counts exactly once; for a mesh that is not closed there is no right answer, and points on
+    /// the surface may get either.
     #[must_use]
     pub fn contains(&self, point: [f32; 3]) -> bool {
         self.way_out(point).is_some_and(|ray| self.count_hits(&ray) % 2 == 1)
     }
 
-    /// A ray from a point to infinity along the shortest side of the bounds, to the nearer end: it meets
-    /// the fewest boxes. `None` for points beyond the bounds, which are outside.
+    /// A ray from a point to infinity along the shortest side of the bounds, to the nearer end: it
+    /// meets the fewest boxes. `None` for points beyond the bounds, which are outside.
     pub(super) fn way_out(&self, point: [f32; 3]) -> Option<Ray> {
         let Aabb { lower, upper } = self.bounds;
         let axis = self.shortest_side();
@@ -68,15 +69,15 @@ impl Tracer {
         (0..3).all(|axis| lower[axis] <= point[axis] && point[axis] <= upper[axis])
     }
 
-    /// The grid that tells of most points whether they are inside, if there is one, or if it is worth
-    /// being made, now that so many points more are asked.
+    /// The grid that tells of most points whether they are inside, if there is one, or if it is
+    /// worth being made, now that so many points more are asked.
     pub(super) fn grid_for(&self, points: usize) -> Option<&Grid> {
         let asked = self.points_asked.fetch_add(points, Relaxed).saturating_add(points);
         if self.grid.get().is_none() && asked >= POINTS_PER_TRIANGLE * self.triangle_count {
             let made =
                 Grid::new(&self.trip, self.bounds, self.shortest_side(), self.triangle_count);
-            // Threads that come here at the same time all make it: one of a pool that waits takes up
-            // other work, which could be to wait for what it is making.
+            // Threads that come here at the same time all make it: one of a pool that waits takes
+            // up other work, which could be to wait for what it is making.
             self.grid.get_or_init(|| made);
         }
         self.grid.get()?.as_ref()
@@ -94,8 +95,8 @@ impl Tracer {
         if x <= y && x <= z { 0 } else { 1 + usize::from(z < y) }
     }
 
-    /// Writes to `inside[i]` whether `points[i]` is [inside](Tracer::contains). Points whose ways out
-    /// are beside each other should follow each other.
+    /// Writes to `inside[i]` whether `points[i]` is [inside](Tracer::contains). Points whose ways
+    /// out are beside each other should follow each other.
     pub(super) fn contain(&self, points: &[[f32; 3]], inside: &mut [bool]) {
         inside.fill(false);
         let ways: Vec<Option<Ray>> = points.iter().map(|point| self.way_out(*point)).collect();

@@ -17,15 +17,17 @@ use crate::tree::Tree;
 ///
 /// Copies triangles in leaf order, eight to a block: [`Tracer::size_bytes`] says what that takes.
 /// The first query for a closest point or for what is within a sphere makes what such queries need
-/// besides: about a sixth more memory, and some milliseconds for 100,000 triangles. Batches that ask
-/// whether many points are inside make a grid of cells of which that is known: four bytes a triangle.
+/// besides: about a sixth more memory, and some milliseconds for 100,000 triangles. Batches that
+/// ask whether many points are inside make a grid of cells of which that is known: four bytes a
+/// triangle, and a hundred while it is made.
 pub struct Tracer {
     pub(super) trip: Trip,
     pub(super) bounds: Aabb,
     pub(super) triangle_count: usize,
     /// Made when first asked for.
     tilts: OnceLock<Vec<Tilt>>,
-    /// Made when so many points have been asked whether they are inside that it is worth it, if then.
+    /// Made when so many points have been asked whether they are inside that it is worth it, if
+    /// then.
     pub(super) grid: OnceLock<Option<Grid>>,
     /// How many have been.
     pub(super) points_asked: AtomicUsize,

@@ -4,12 +4,13 @@
 //! and those that no triangle reaches into are inside or outside as a whole: a point in one of them
 //! need not ask a ray. The answer is the very one that its ray would give:
 //!
-//! * The ray is the [way out](crate::Tracer::way_out), and its answer the parity of what it crosses.
-//!   While its origin moves through a cell without a surface, this changes only where the ray passes
-//!   an edge of an odd number of triangles, for at every other edge as many crossings come as go, or
-//!   an even number at once. So a cell whose ways out pass such an edge is not taken for a whole either.
-//! * Cells count as larger than they are by [`MARGIN`]. That is more than a ray, a point, a corner or a
-//!   crossing is moved by any rounding, here and in the tests of triangles.
+//! * The ray is the [way out](crate::Tracer::way_out), and its answer the parity of what it
+//!   crosses. While its origin moves through a cell without a surface, this changes only where the
+//!   ray passes an edge of an odd number of triangles, for at every other edge as many crossings
+//!   come as go, or an even number at once. So a cell whose ways out pass such an edge is not taken
+//!   for a whole either.
+//! * Cells count as larger than they are by [`MARGIN`]. That is more than a ray, a point, a corner
+//!   or a crossing is moved by any rounding, here and in the tests of triangles.
 //! * A crossing of the line through the middle of a column is on the same side of a cell without a
 //!   surface as those of all its rays. So one ray a column tells for all its cells.
 
@@ -34,8 +35,8 @@ use sweep::{cells, columns};
 /// How much larger than it is a cell counts on every side, in units of a cell.
 const MARGIN: f64 = 1.0 / 64.0;
 
-/// How many columns may be visited a triangle, on average, to see which cells triangles reach into. If
-/// it were more, cells are made larger.
+/// How many columns may be visited a triangle, on average, to see which cells triangles reach into.
+/// If it were more, cells are made larger.
 const VISITS: f64 = 8.0;
 
 /// Two bits a cell, of which the first says that a surface may be in it, and the second that it is
@@ -55,8 +56,8 @@ const IN_WORD: usize = 32;
 const ONES: u64 = 0x5555_5555_5555_5555;
 
 impl Grid {
-    /// The grid of the triangles of a layout, so many of them and in a box, whose ways out go `along`
-    /// an axis. `None` where there is no room for cells.
+    /// The grid of the triangles of a layout, so many of them and in a box, whose ways out go
+    /// `along` an axis. `None` where there is no room for cells.
     pub(super) fn new(trip: &Trip, bounds: Aabb, along: usize, triangles: usize) -> Option<Self> {
         let triangles = Triangles::new(&trip.layout.blocks, triangles);
         let space = Space::new(bounds, along, triangles.0.len())?;

@@ -26,8 +26,8 @@ pub(super) struct Space {
 }
 
 impl Space {
-    /// Cells for a box with so many triangles in it. `None` for a box without size, or of a size that
-    /// numbers are not made for.
+    /// Cells for a box with so many triangles in it. `None` for a box without size, or of a size
+    /// that numbers are not made for.
     pub(super) fn new(bounds: Aabb, along: usize, triangles: usize) -> Option<Self> {
         let cells = CELLS_PER_TRIANGLE * triangles as f64;
         let axes = [(along + 1) % 3, (along + 2) % 3, along];
@@ -72,8 +72,8 @@ impl Space {
         (2 * (x * self.counts[1] + y) + usize::from(is_above)) * self.counts[2]
     }
 
-    /// The cell that a point of the box is in. Along a column cells are counted from the nearer end,
-    /// the one where the [way out](crate::Tracer::way_out) ends.
+    /// The cell that a point of the box is in. Along a column cells are counted from the nearer
+    /// end, the one where the [way out](crate::Tracer::way_out) ends.
     #[inline]
     pub(super) fn cell(&self, point: &[f32; 3]) -> usize {
         let Aabb { lower, upper } = &self.bounds;

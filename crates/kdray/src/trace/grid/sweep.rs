@@ -11,8 +11,9 @@ struct Polygon {
     len: usize,
 }
 
-/// Calls `visit` with every column in which a triangle has a part, and from where to where along the
-/// column that reaches. Cells are taken as larger than they are, by [`MARGIN`] on all sides across.
+/// Calls `visit` with every column in which a triangle has a part, and from where to where along
+/// the column that reaches. Cells are taken as larger than they are, by [`MARGIN`] on all sides
+/// across.
 pub(super) fn columns(
     triangle: &[[f64; 3]; 3],
     counts: [usize; 3],

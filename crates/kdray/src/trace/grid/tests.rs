@@ -21,8 +21,8 @@ fn meshes() -> Vec<Mesh> {
     soups.into_iter().chain([balls(usize::MAX), balls(701), balls(60), sheet()]).collect()
 }
 
-/// Balls that overlap, without every `gap`-th face. Their poles are triangles without area, and every
-/// other one is a box.
+/// Balls that overlap, without every `gap`-th face. Their poles are triangles without area, and
+/// every other one is a box.
 fn balls(gap: usize) -> Mesh {
     const TURN: u32 = 48;
     let (mut corners, mut faces) = (Vec::new(), Vec::new());
