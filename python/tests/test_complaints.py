@@ -166,6 +166,16 @@ class TestInside:
         for threads in (1, 2):
             np.testing.assert_array_equal(first, tree.contains(points, threads=threads))
 
+    def test_many_points_are_told_what_few_are_told(self, closed):
+        """Many are looked up in cells, few ask rays."""
+        vertices, faces, tree = closed
+        points = vertices.mean(0) + np.random.default_rng(11).uniform(-1.2, 1.2, (20_000, 3))
+        many = tree.contains(points)
+        for few in np.split(np.arange(len(points)), 1000)[::50]:
+            fresh = kdray.build(vertices, faces)
+            np.testing.assert_array_equal(fresh.contains(points[few]), many[few])
+        assert 0 < many.sum() < len(many)
+
     def test_a_cavity_is_outside(self):
         outer, inner = cube(), cube(0.25, 0.75)
         vertices = np.concatenate([outer[0], inner[0]])

@@ -62,6 +62,7 @@ def test_a_thousand_builds_and_queries_leave_nothing_behind():
         tree.closest_hit(origins, directions).points  # noqa: B018
         tree.all_hits(origins, directions)
         tree.closest_point(origins)
+        tree.contains(origins.repeat(8, axis=0))
         with pytest.raises(ValueError):
             kdray.build(vertices, faces + 1000)
 

@@ -313,7 +313,8 @@ def test_many_threads_make_what_a_tree_makes_when_first_asked():
     points = random_rays(2000, dtype=np.float64)[0]
     for _ in range(20):
         tree = kdray.build(*icosphere(4))
-        with ThreadPoolExecutor(8) as pool:
-            answers = list(pool.map(tree.winding_number, [points] * 8))
-        for answer in answers:
-            np.testing.assert_array_equal(answer, answers[0])
+        for query in (tree.winding_number, tree.contains, tree.signed_distance):
+            with ThreadPoolExecutor(8) as pool:
+                answers = list(pool.map(query, [points] * 8))
+            for answer in answers:
+                np.testing.assert_array_equal(answer, answers[0])
