@@ -8,8 +8,9 @@ const CELLS_PER_TRIANGLE: f64 = 16.0;
 /// The most cells along an axis, on either side of the middle.
 const MOST: f64 = 2048.0;
 
-/// How many of the smallest steps of a coordinate a cell is wide at least.
-const STEPS: f64 = 64.0;
+/// How many of the smallest steps of a coordinate a cell is wide at least. Roundings are some of
+/// these steps, and fewer than a [margin](super::MARGIN) has.
+const STEPS: f64 = 512.0;
 
 /// Columns of cells along the axis of the ways out, [halved](Self::cell) in the middle of the box.
 ///
