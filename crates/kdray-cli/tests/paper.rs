@@ -113,7 +113,14 @@ fn a_gpu_adds_its_work() {
     for list in ["stages", "levels"] {
         assert!(gpu["profile"][list].as_array().is_some_and(|list| list.len() > 5), "{list}");
     }
+    for figure in ["nodes_per_ray", "leaves_per_ray", "triangle_tests_per_ray"] {
+        assert!(gpu["rays"][figure].as_f64().is_some_and(|x| x > 0.0), "{figure}");
+    }
     let page = fs::read_to_string(bench.path("page.html")).expect("it was written");
+    for stage in gpu["profile"]["stages"].as_array().expect("stages") {
+        let name = stage["stage"].as_str().expect("a name");
+        assert!(page.contains(&format!("</span> {name}</li>")), "no legend has {name}");
+    }
     assert!(outside(&page).is_empty(), "{:?}", outside(&page));
     assert_eq!(page.matches("<svg").count(), 7);
     assert_eq!(

@@ -2,7 +2,7 @@
 
 mod answers;
 mod ask;
-mod profile;
+pub(crate) mod profile;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use kdray::{BatchOptions, Mesh, Ray, Tree};
+use kdray_gpu::TraceReport;
 use serde::Serialize;
 
 use crate::output;
@@ -16,13 +17,33 @@ pub(super) struct Profile {
     million_rays_per_s: f64,
     /// Of the tracer on the CPU, which answers the same rays in the same run.
     cpu_million_rays_per_s: f64,
-    nodes_per_ray: f64,
-    leaves_per_ray: f64,
-    triangle_tests_per_ray: f64,
+    #[serde(flatten)]
+    each: PerRay,
+    kernels: Vec<KernelTime>,
+}
+
+/// What a ray visits and tests on a GPU, and what it has there.
+#[derive(Serialize)]
+pub(crate) struct PerRay {
+    pub(crate) nodes_per_ray: f64,
+    pub(crate) leaves_per_ray: f64,
+    pub(crate) triangle_tests_per_ray: f64,
     /// Memory that a ray has for itself, in the kernel that follows it and in the one that works out
     /// where it hits.
-    private_bytes: [u32; 2],
-    kernels: Vec<KernelTime>,
+    pub(crate) private_bytes: [u32; 2],
+}
+
+impl PerRay {
+    /// Of the closest hits of so many rays.
+    pub(crate) fn of(report: &TraceReport, rays: usize) -> Self {
+        let each = |count: u64| count as f64 / rays.max(1) as f64;
+        Self {
+            nodes_per_ray: each(report.steps),
+            leaves_per_ray: each(report.leaves),
+            triangle_tests_per_ray: each(report.tests),
+            private_bytes: report.private_bytes,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -49,7 +70,6 @@ impl Profile {
         let cpu_seconds = start.elapsed().as_secs_f64();
         anyhow::ensure!(hits == expected, "the GPU's hits are not those of the CPU");
         let rate = |seconds: f64| rays.len() as f64 / seconds.max(1e-9) * 1e-6;
-        let per_ray = |count: u64| count as f64 / rays.len().max(1) as f64;
         let mut kernels: Vec<KernelTime> = Vec::new();
         for stage in &report.profile.stages {
             match kernels.iter_mut().find(|time| time.kernel == stage.name) {
@@ -61,16 +81,14 @@ impl Profile {
             rays: rays.len(),
             million_rays_per_s: rate(seconds),
             cpu_million_rays_per_s: rate(cpu_seconds),
-            nodes_per_ray: per_ray(report.steps),
-            leaves_per_ray: per_ray(report.leaves),
-            triangle_tests_per_ray: per_ray(report.tests),
-            private_bytes: report.private_bytes,
+            each: PerRay::of(&report, rays.len()),
             kernels,
         })
     }
 
     pub(super) fn text(&self) -> String {
-        let [walk, locate] = self.private_bytes;
+        let each = &self.each;
+        let [walk, locate] = each.private_bytes;
         let mut rows = vec![
             ("rays", count(self.rays)),
             ("GPU", format!("{:.3} million a second", self.million_rays_per_s)),
@@ -79,7 +97,7 @@ impl Profile {
                 "a ray",
                 format!(
                     "visits {:.1} nodes and {:.1} leaves, tests {:.1} triangles",
-                    self.nodes_per_ray, self.leaves_per_ray, self.triangle_tests_per_ray
+                    each.nodes_per_ray, each.leaves_per_ray, each.triangle_tests_per_ray
                 ),
             ),
             ("memory", format!("{walk} bytes a ray on its way, {locate} to locate its hit")),

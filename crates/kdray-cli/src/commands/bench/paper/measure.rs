@@ -13,10 +13,11 @@ use super::super::rays;
 use super::published::BANDWIDTH;
 use crate::commands::build::device;
 use crate::commands::build::profile::{Profile, ProfileArguments};
+use crate::commands::query::profile::PerRay;
 use crate::progress::Progress;
 
 /// Pixels along a side of the picture that is traced, as in the paper.
-const SIDE: u32 = 1024;
+pub(super) const SIDE: u32 = 1024;
 
 /// On the CPU. Times are the best of all passes, by the wall clock.
 #[derive(Serialize)]
@@ -40,6 +41,8 @@ pub(super) struct GpuFigures {
     /// Whether the tree has the bytes of the CPU's, and the rays its hits.
     pub(super) same_tree: bool,
     pub(super) same_hits: bool,
+    /// Of these rays.
+    pub(super) rays: PerRay,
     pub(super) profile: Profile,
 }
 
@@ -94,38 +97,32 @@ pub(super) fn gpu(
     let options = BuildOptions { cancel: Some(plan.cancel), ..BuildOptions::default() };
     kdray_gpu::prepare(device)?;
     let passes = if is_software(device) { 1 } else { plan.passes };
-    let (mut build_s, mut trace_s, mut same_hits) = (f64::INFINITY, f64::INFINITY, true);
+    let rays = rays::through(camera, SIDE);
+    let (mut build_s, mut trace_s) = (f64::INFINITY, f64::INFINITY);
+    let mut traced = None;
     for pass in 0..passes {
         let start = Instant::now();
         let (tracer, _) = kdray_gpu::Tracer::build(device, mesh, &options)?;
         build_s = build_s.min(start.elapsed().as_secs_f64());
-        let (seconds, is_same) = gpu_trace(mesh, camera, &tracer, expected)?;
-        (trace_s, same_hits) = (trace_s.min(seconds), same_hits && is_same);
+        tracer.prepare()?;
+        let batch = tracer.batch(TraceOptions::default());
+        let mut hits = vec![None; rays.len()];
+        let start = Instant::now();
+        batch.closest_hits(&rays, &mut hits)?;
+        trace_s = trace_s.min(start.elapsed().as_secs_f64());
+        let report = batch.closest_hits_reported(&rays, &mut hits)?;
+        traced = Some((hits, PerRay::of(&report, rays.len())));
         progress.set(0.25 + 0.25 * (pass + 1) as f32 / passes as f32);
     }
     let profile = ProfileArguments { profile: true, bandwidth: BANDWIDTH };
     let built = device::build(device, mesh, &options, &profile)?;
     let same_tree = built.tree.to_bytes() == expected.to_bytes();
     let profile = built.gpu.and_then(|gpu| gpu.profile).context("a profile was asked for")?;
-    Ok(GpuFigures { build_s, trace_s, same_tree, same_hits, profile })
-}
-
-/// The time of a picture's rays over the tree on the device, and whether their hits are those of the CPU.
-fn gpu_trace(
-    mesh: &Mesh,
-    camera: &Camera,
-    tracer: &kdray_gpu::Tracer,
-    tree: &Tree,
-) -> anyhow::Result<(f64, bool)> {
-    tracer.prepare()?;
-    let batch = tracer.batch(TraceOptions::default());
-    let rays = rays::through(camera, SIDE);
-    let (mut hits, mut expected) = (vec![None; rays.len()], vec![None; rays.len()]);
-    let start = Instant::now();
-    batch.closest_hits(&rays, &mut hits)?;
-    let trace_s = start.elapsed().as_secs_f64();
-    Tracer::new(mesh, tree).closest_hits(&rays, &mut expected);
-    Ok((trace_s, hits == expected))
+    let (hits, of_rays) = traced.context("there is a pass at least")?;
+    let mut of_cpu = vec![None; rays.len()];
+    Tracer::new(mesh, expected).closest_hits(&rays, &mut of_cpu);
+    let same_hits = hits == of_cpu;
+    Ok(GpuFigures { build_s, trace_s, same_tree, same_hits, rays: of_rays, profile })
 }
 
 pub(super) fn is_software(device: &Device) -> bool {

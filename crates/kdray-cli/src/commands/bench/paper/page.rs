@@ -49,13 +49,17 @@ fn head(report: &Report) -> Markup {
                 "The paper's GPU is a " (GPU) " with " (BANDWIDTH) " GB/s."
             }
             p {
-                (report.date) "; CPU: " (machine.cpu) ", " (machine.threads) " threads, "
+                (report.date) "; CPU: " (machine.cpu) ", " (threads(machine.threads)) ", "
                 (machine.system) "; passes: " (report.passes) ", the best of which counts. Made by"
             }
             pre { (report.command) }
             (device(report.device.as_ref()))
         }
     }
+}
+
+fn threads(threads: usize) -> String {
+    if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") }
 }
 
 fn device(device: Option<&DeviceFigures>) -> Markup {
@@ -148,6 +152,9 @@ fn all_tables(report: &Report) -> Markup {
                     "The floor is the time in which the paper's bandwidth moves these bytes: no "
                     "build can be faster there, and none need be as fast."
                 }
+                h3 { "Rays on the GPU" }
+                (tables::rays(report))
+                (about_rays(report, is_software))
             }
             h3 { "Trees" }
             (tables::trees(report))
@@ -155,6 +162,20 @@ fn all_tables(report: &Report) -> Markup {
                 h3 { "Times on the software device" }
                 (tables::software(report))
                 p .small { "Not comparable with any other time on this page, nor with the paper's." }
+            }
+        }
+    }
+}
+
+fn about_rays(report: &Report, is_software: bool) -> Markup {
+    let private = report.on_gpu().next().map(|(_, gpu)| gpu.rays.private_bytes);
+    html! {
+        p .small {
+            "The closest hits of the same rays, in the same run, with their way to the GPU and back."
+            @if is_software { " The GPU is a program on this CPU." }
+            @if let Some([walk, locate]) = private {
+                " A ray has " (walk) " bytes of memory for itself on its way, and " (locate)
+                " while it is worked out where it hits."
             }
         }
     }

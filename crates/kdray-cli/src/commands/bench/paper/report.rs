@@ -133,7 +133,11 @@ impl Report {
                 Outcome::Missing { wanted } => format!("missing: no {wanted} in {}", self.meshes),
                 Outcome::Measured(measured) => {
                     let CpuFigures { build_s, trace_s, .. } = measured.cpu;
-                    format!("built in {build_s:.3} s and traced in {trace_s:.3} s on the CPU")
+                    let on_cpu = format!("built in {build_s:.3} s, traced in {trace_s:.3} s");
+                    let on_gpu = measured.gpu.as_ref().map_or_else(String::new, |gpu| {
+                        format!("; on the GPU {:.3} s, {:.3} s", gpu.build_s, gpu.trace_s)
+                    });
+                    on_cpu + &on_gpu
                 }
             };
             let _ = writeln!(text, "{title:12}{line}");

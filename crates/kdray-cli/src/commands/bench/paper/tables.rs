@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use super::measure::SIDE;
 use super::published::{BANDWIDTH, Peer};
 use super::report::{Measured, Outcome, Report, SceneReport};
 use super::scenes::Likeness;
@@ -138,7 +139,7 @@ pub(super) fn memory(report: &Report) -> Markup {
 pub(super) fn work(report: &Report) -> Markup {
     let groups = vec![
         group("Work", &["dispatches", "readbacks"]),
-        group("Bytes moved", &["MB", "a triangle"]),
+        group("Bytes moved", &["MB", "bytes a triangle"]),
         group(&format!("Build at {BANDWIDTH} GB/s, s"), &["floor", "paper's time"]),
         group("As the CPU's", &["tree", "hits"]),
     ];
@@ -149,13 +150,30 @@ pub(super) fn work(report: &Report) -> Markup {
         vec![
             count(profile.dispatches as usize),
             count(profile.readbacks as usize),
-            format!("{:.0}", moved / 1e6),
-            format!("{:.0} bytes", moved / measured.tree.triangles.max(1) as f64),
+            count((moved / 1e6).round() as usize),
+            count((moved / measured.tree.triangles.max(1) as f64).round() as usize),
             format!("{:.4}", profile.floor_s),
             seconds(Some(scene.paper.build_s)),
             if gpu.same_tree { "yes, byte for byte" } else { "no" }.to_owned(),
             if gpu.same_hits { "yes, bit for bit" } else { "no" }.to_owned(),
         ]
+    })
+}
+
+/// What rays take on the device, beside the tracer on the CPU.
+pub(super) fn rays(report: &Report) -> Markup {
+    let groups = vec![
+        group("Million rays a second", &["CPU", "GPU"]),
+        group("A ray's", &["nodes", "leaves", "triangle tests"]),
+    ];
+    let rate = |seconds: f64| format!("{:.2}", 1e-6 * f64::from(SIDE * SIDE) / seconds.max(1e-9));
+    Table { report, groups }.rows(|_, measured| {
+        let Some(gpu) = &measured.gpu else { return Vec::new() };
+        let rays = &gpu.rays;
+        let each = [rays.nodes_per_ray, rays.leaves_per_ray, rays.triangle_tests_per_ray];
+        let mut cells = Vec::from([measured.cpu.trace_s, gpu.trace_s].map(rate));
+        cells.extend(each.map(|count| format!("{count:.1}")));
+        cells
     })
 }
 
