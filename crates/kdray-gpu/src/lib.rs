@@ -14,4 +14,4 @@ pub use build::{
 };
 pub use device::{Adapter, Device, Kind, Limits, Selection, devices};
 pub use error::GpuError;
-pub use trace::{Batch, Rays, TraceOptions, TraceReport, Tracer};
+pub use trace::{Batch, HitLists, Rays, TraceOptions, TraceReport, Tracer};

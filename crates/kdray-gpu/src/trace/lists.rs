@@ -10,6 +10,7 @@ use kdray::{Hit, Lists, Ray};
 
 use super::batch::Batch;
 use super::kernels::{LOCATE_MET, MEET, ORDER, Rays};
+use super::tracer::Tracer;
 use crate::device::Buffer;
 use crate::error::GpuError;
 use crate::primitives::scan::Scan;
@@ -18,13 +19,15 @@ use crate::record::{Count, Recording};
 /// Bytes of a hit.
 const HIT: u64 = size_of::<Hit>() as u64;
 
-/// Hits of consecutive rays on the device.
-struct Found {
-    /// Where the hits of a ray may begin, and, last, where those of the last one end.
-    starts: Buffer,
-    /// By ray, how many there are from its start on.
-    counts: Buffer,
-    hits: Buffer,
+/// All hits of consecutive rays, in the memory of the device.
+#[derive(Debug)]
+pub struct HitLists {
+    /// By ray, where its hits begin.
+    pub starts: Buffer,
+    /// By ray, how many there are from there on.
+    pub counts: Buffer,
+    /// Four words each, a [`kdray::Hit`]. What is between lists means nothing.
+    pub hits: Buffer,
 }
 
 impl Batch<'_> {
@@ -32,9 +35,9 @@ impl Batch<'_> {
     pub fn count_hits(&self, rays: &[Ray], counts: &mut [u32]) -> Result<(), GpuError> {
         let device = self.tracer.device();
         self.in_chunks(rays, counts, |rays, counts| {
-            self.in_parts(rays, |first, found, count| {
-                let read = device.read::<u32>(&found.counts.words(0, count as u64))?;
-                counts[first..first + count].copy_from_slice(&read);
+            self.tracer.all_hits(rays, |part, found| {
+                let read = device.read::<u32>(&found.counts.words(0, part.len() as u64))?;
+                counts[part.start as usize..part.end as usize].copy_from_slice(&read);
                 Ok(())
             })
         })
@@ -52,8 +55,8 @@ impl Batch<'_> {
         let (mut done, mut is_over) = (0, false);
         let mut unit = vec![(); rays.len()];
         self.in_chunks(rays, &mut unit, |rays, _| {
-            self.in_parts(rays, |_, found, count| {
-                let first = done;
+            self.tracer.all_hits(rays, |part, found| {
+                let (first, count) = (done, part.len());
                 done += count;
                 if is_over {
                     return Ok(());
@@ -72,50 +75,60 @@ impl Batch<'_> {
             })
         })
     }
+}
 
-    /// Finds the hits of rays on the device, of as many at a time as it may bind hits, and gives
-    /// them to `take` with the index of the first and the number of rays.
-    fn in_parts(
+impl Tracer<'_> {
+    /// Finds [all hits](kdray::Tracer::all_hits) of rays that are on the device, which stay there, and
+    /// how many they are. `take` gets them with the range of their rays, as many at a time as the
+    /// device may bind hits.
+    ///
+    /// # Errors
+    ///
+    /// As [`Batch::all_hits`], and those of `take`.
+    ///
+    /// # Panics
+    ///
+    /// If only the device knows how many rays there are.
+    pub fn all_hits(
         &self,
         rays: &Rays,
-        mut take: impl FnMut(usize, Found, usize) -> Result<(), GpuError>,
+        mut take: impl FnMut(Range<u32>, &HitLists) -> Result<(), GpuError>,
     ) -> Result<(), GpuError> {
+        assert!(rays.live.is_none(), "the host makes room for the hits, so it has to know");
         let mut waiting: Vec<_> = std::iter::once(0..rays.count).collect();
         while let Some(part) = waiting.pop() {
             let some = rays.part(&part);
             let starts = self.count_met(&some)?;
             let count = u64::from(some.count);
-            let total = self.tracer.device().read::<u32>(&starts.words(count, 1))?[0];
-            if HIT * u64::from(total) > self.tracer.device().limits().binding_bytes {
+            let total = self.device.read::<u32>(&starts.words(count, 1))?[0];
+            if HIT * u64::from(total) > self.device.limits().binding_bytes {
                 waiting.extend(self.halves(part, total)?);
                 continue;
             }
             let found = self.find(&some, starts, total)?;
-            take(part.start as usize, found, some.count as usize)?;
+            take(part, &found)?;
         }
         Ok(())
     }
-}
 
-impl Batch<'_> {
     /// By ray, how many triangles come before those that it meets, and, last, how many all meet.
     fn count_met(&self, rays: &Rays) -> Result<Buffer, GpuError> {
-        let device = self.tracer.device();
+        let device = self.device;
         let starts = device.buffer("starts", u64::from(rays.count) + 1)?;
         let nothing = device.buffer("triangles met", 2)?;
         let scan = Scan::new(device, rays.count + 1)?;
         let mut recording = Recording::new(device);
         recording.clear(&starts);
         let answers = [&starts, &nothing];
-        rays.query(&mut recording, (&MEET, true), &self.tracer.scene, &answers);
+        rays.query(&mut recording, (&MEET, true), &self.scene, &answers);
         scan.record(&mut recording, &starts, &Count::from(rays.count + 1), None);
         recording.run()?;
         Ok(starts)
     }
 
     /// The hits of rays that meet `total` triangles.
-    fn find(&self, rays: &Rays, starts: Buffer, total: u32) -> Result<Found, GpuError> {
-        let (device, scene) = (self.tracer.device(), &self.tracer.scene);
+    fn find(&self, rays: &Rays, starts: Buffer, total: u32) -> Result<HitLists, GpuError> {
+        let (device, scene) = (self.device, &self.scene);
         let met = device.buffer("triangles met", 2 * u64::from(total).max(1))?;
         let hits = device.buffer("hits", 4 * u64::from(total).max(1))?;
         let counts = device.buffer("counts of hits", rays.count.into())?;
@@ -126,14 +139,14 @@ impl Batch<'_> {
         rays.run(&mut recording, (&LOCATE_MET, total.into()), scene, &located);
         rays.run(&mut recording, (&ORDER, rays.count.into()), scene, &[&starts, &hits, &counts]);
         recording.run()?;
-        Ok(Found { starts, counts, hits })
+        Ok(HitLists { starts, counts, hits })
     }
 
     /// Halves of rays that meet `total` triangles, which are too many; the first one last.
     fn halves(&self, part: Range<u32>, total: u32) -> Result<[Range<u32>; 2], GpuError> {
         let half = (part.len() as u32 / 2).next_multiple_of(Rays::ALIGNMENT);
         if half >= part.len() as u32 {
-            let device = self.tracer.device();
+            let device = self.device;
             return Err(GpuError::Limit {
                 adapter: device.adapter().name.clone(),
                 limit: "binding_bytes",

@@ -13,6 +13,7 @@ mod tracer;
 
 pub use batch::{Batch, TraceOptions, TraceReport};
 pub use kernels::Rays;
+pub use lists::HitLists;
 pub use tracer::Tracer;
 
 use kernels::{ANY, LOCATE_MET, MEET, ORDER};

@@ -5,7 +5,8 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use kdray::{BatchError, BuildOptions, Hit, Mesh, Ray, Tree};
-use kdray_gpu::{Device, GpuError, TraceOptions, Tracer};
+use kdray_gpu::record::Recording;
+use kdray_gpu::{Device, GpuError, Rays, TraceOptions, Tracer};
 use kdray_test::rays::RayMaker;
 use kdray_test::{Random, Scene, oracle, scenes, shared};
 
@@ -130,6 +131,45 @@ fn lists_come_in_parts() {
         let expected: Vec<_> = (0..count).map(|index| first[index % 100].clone()).collect();
         let tracer = Tracer::new(lavapipe(), &subject.mesh, &subject.tree).expect("it fits");
         check_lists(&tracer, &subject.name, &rays, &expected);
+    }
+}
+
+/// Rays that are on the device, whose answers stay there: the same bits.
+#[test]
+fn rays_on_the_device_get_what_rays_of_the_host_get() {
+    let device = lavapipe();
+    let subject = Subject::of_scene(scenes::ordinary().swap_remove(3));
+    let (tracer, _) = Tracer::build(device, &subject.mesh, &BuildOptions::default()).expect("fits");
+    let rays = subject.rays(700, 80);
+    let (count, words) = (rays.len() as u32, rays.len() as u64);
+    let uploaded = device.upload("rays", &rays).expect("it fits");
+    let on_device = Rays { rays: uploaded, except: None, count, live: None };
+    let buffer = |each: u64| device.buffer("answers", each * words).expect("it fits");
+    let (triangles, hits, found) = (buffer(1), buffer(4), buffer(1));
+    let mut recording = Recording::new(device);
+    tracer.record_closest(&mut recording, &on_device, [&triangles, &hits]);
+    tracer.record_any(&mut recording, &on_device, &found);
+    recording.run().expect("it runs");
+    let hits: Vec<Hit> = device.read(&hits).expect("it is read");
+    let found: Vec<u32> = device.read(&found).expect("it is read");
+    let mut lists = Vec::new();
+    let taken = tracer.all_hits(&on_device, |part, found| {
+        assert_eq!(part.start as usize, lists.len());
+        let [starts, counts]: [Vec<u32>; 2] =
+            [device.read(&found.starts)?, device.read(&found.counts)?];
+        let hits: Vec<Hit> = device.read(&found.hits)?;
+        for (start, count) in starts.into_iter().zip(counts) {
+            lists.push(hits[start as usize..(start + count) as usize].to_vec());
+        }
+        Ok(())
+    });
+    taken.expect("it runs");
+    for (index, ray) in rays.iter().enumerate() {
+        let expected = oracle::all_hits(&subject.mesh, ray);
+        let hit = (hits[index].triangle != u32::MAX).then_some(hits[index]);
+        assert_eq!(bits(hit), bits(expected.first().copied()), "{ray:?}");
+        assert_eq!(found[index] == 1, !expected.is_empty(), "{ray:?}");
+        assert_eq!(lists[index], expected, "{ray:?}");
     }
 }
 
