@@ -41,6 +41,8 @@ impl Bench {
     pub(crate) fn kdray(&self, arguments: &str) -> Command {
         let mut command = Command::new(assert_cmd::cargo::cargo_bin!("kdray"));
         command.current_dir(self.folder.path()).args(arguments.split_whitespace());
+        // Mesa complains on standard error where this is not set.
+        command.env("XDG_RUNTIME_DIR", self.folder.path());
         command
     }
 
