@@ -1,6 +1,7 @@
 //! Large arrays in large pages.
 
 /// A page of the size that processors translate in one step.
+#[cfg(any(target_os = "linux", test))]
 const HUGE_PAGE: usize = 2 << 20;
 
 /// An empty vector with room for `capacity` elements, in huge pages where the system has them.
