@@ -1,6 +1,6 @@
 //! Memory that one build leaves to the next.
 
-use crate::device::Buffer;
+use crate::device::{Buffer, generous};
 use crate::primitives::radix::Sort;
 use crate::primitives::scan::Scan;
 
@@ -43,11 +43,10 @@ impl Spare {
         Some(buffers.swap_remove(index))
     }
 
-    /// How many words to allocate where `words` are needed: one of four sizes an octave, so that
-    /// the next tree, which is a little larger, finds room in the same buffers.
+    /// How many words to allocate where `words` are needed: some more if the next tree, which may be a
+    /// little larger, is to find room in the same buffers.
     pub(crate) fn generous(&self, words: u64) -> u64 {
-        let step = (words.next_power_of_two() / 8).max(1);
-        if self.buffers.is_some() { words.next_multiple_of(step) } else { words }
+        if self.buffers.is_some() { generous(words) } else { words }
     }
 
     /// Keeps the buffer, or gives it back.

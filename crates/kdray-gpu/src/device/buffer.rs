@@ -7,9 +7,14 @@ use std::sync::{Arc, Weak};
 use super::Device;
 use crate::error::GpuError;
 
-/// Sizes of buffers that are filled again and again: what grows a little finds room more often with
+/// Sizes of buffers that are used again and again: what grows a little finds room more often with
 /// fewer of them, and all take more memory.
-const SIZES_AN_OCTAVE: u64 = 4;
+const SIZES_AN_OCTAVE: u64 = 2;
+
+/// How many words to allocate where `words` are needed now, and perhaps a few more later.
+pub(crate) fn generous(words: u64) -> u64 {
+    words.next_multiple_of((words.next_power_of_two() / SIZES_AN_OCTAVE / 2).max(1))
+}
 
 /// Bytes that the buffers of a device take.
 #[derive(Debug, Default)]
@@ -211,8 +216,7 @@ impl Device {
         if asked > buffer.size_bytes() {
             let words = asked.div_ceil(4);
             let most = (offered / 4).min(self.limits.buffer_bytes / 4).max(words);
-            let step = (words.next_power_of_two() / SIZES_AN_OCTAVE / 2).max(1);
-            *buffer = self.buffer(label, words.next_multiple_of(step).min(most))?;
+            *buffer = self.buffer(label, generous(words).min(most))?;
         }
         self.fill(buffer, bytemuck::cast_slice(data));
         Ok(())

@@ -12,8 +12,8 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 pub use adapter::{Adapter, Kind, Selection, devices};
-pub(crate) use buffer::Watch;
 pub use buffer::{Buffer, MemoryUse};
+pub(crate) use buffer::{Watch, generous};
 pub use limits::Limits;
 pub use traffic::Traffic;
 
