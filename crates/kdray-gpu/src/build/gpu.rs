@@ -79,12 +79,12 @@ impl<'a> Gpu<'a> {
         }
         // Levels grow and shrink a little; not every one needs new buffers, if there is room for more.
         let slack = (words / SLACK).min((self.most_bytes() / 4).saturating_sub(words));
-        let is_tight = self.held() + 4 * (words + slack) > self.aim;
+        let is_tight = self.in_use() + 4 * (words + slack) > self.aim;
         let slack = if is_tight { 0 } else { slack };
         self.allocate(words + slack).map(Some)
     }
 
-    /// A buffer of `words`, or a spare one that is not much larger.
+    /// A buffer of `words`, or a spare one that is larger.
     fn allocate(&mut self, words: u64) -> Result<Buffer, GpuError> {
         if let Some(buffer) = self.spare.take(4 * words) {
             self.book(0)?;
@@ -163,10 +163,15 @@ impl<'a> Gpu<'a> {
 
     /// Bytes of the device that the build has.
     fn held(&mut self) -> u64 {
+        self.in_use() + self.spare.size_bytes()
+    }
+
+    /// Those that are not spare.
+    fn in_use(&mut self) -> u64 {
         self.leaving.retain(|buffer| buffer.size_bytes() > 0);
-        let held = self.buffers.iter().chain(&self.parked).flatten().map(Buffer::size_bytes);
+        let used = self.buffers.iter().chain(&self.parked).flatten().map(Buffer::size_bytes);
         let leaving = self.leaving.iter().map(Watch::size_bytes);
-        held.chain(leaving).sum::<u64>() + self.spare.size_bytes()
+        used.chain(leaving).sum()
     }
 
     /// Submits everything noted down.

@@ -4,13 +4,6 @@ use crate::device::{Buffer, generous};
 use crate::primitives::radix::Sort;
 use crate::primitives::scan::Scan;
 
-/// A spare buffer serves a need of at least its size over this: a smaller factor allocates more
-/// buffers, a larger one gives large buffers to small needs.
-const SLACK: u64 = 2;
-
-/// What is smaller than this serves every smaller need.
-const SMALL_BYTES: u64 = 4096;
-
 /// Buffers that are not in use.
 #[derive(Default)]
 pub(crate) struct Spare {
@@ -32,13 +25,13 @@ impl Spare {
         Self { buffers: Some(Vec::new()), ..Self::default() }
     }
 
-    /// The smallest buffer of at least `bytes`, unless it is far too large.
+    /// The smallest buffer of at least `bytes`. However large it is: what sufficed once suffices again
+    /// then, whatever came in between.
     pub(crate) fn take(&mut self, bytes: u64) -> Option<Buffer> {
         let buffers = self.buffers.as_mut()?;
         buffers.extend(self.lent.extract_if(.., |buffer| !buffer.is_shared()));
-        let fits = bytes..=(SLACK * bytes).max(SMALL_BYTES);
         let sizes = buffers.iter().map(Buffer::size_bytes).enumerate();
-        let fitting = sizes.filter(|(_, size)| fits.contains(size));
+        let fitting = sizes.filter(|(_, size)| *size >= bytes);
         let (index, _) = fitting.min_by_key(|(_, size)| *size)?;
         Some(buffers.swap_remove(index))
     }
