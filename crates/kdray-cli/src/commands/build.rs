@@ -152,6 +152,10 @@ impl Report {
             ("build", format!("{:.3} s, {}, {}", self.build_s, self.builder, self.place())),
             ("peak memory", bytes(self.peak_bytes)),
         ];
+        if let Some(gpu) = self.gpu.as_ref().filter(|gpu| gpu.crown > 0) {
+            let nodes = count(gpu.crown);
+            rows.push(("by the CPU", format!("{nodes} nodes that the device cannot bind")));
+        }
         rows.extend(self.tree.rows());
         rows.extend(self.file.iter().map(|file| ("saved", file.clone())));
         let profile = self.gpu.as_ref().and_then(|gpu| gpu.profile.as_ref());

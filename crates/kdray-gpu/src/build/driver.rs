@@ -2,12 +2,12 @@
 
 use std::sync::atomic::Ordering;
 
-use kdray::build::Limits;
-use kdray::{BuildError, BuildOptions, Mesh};
+use kdray::{BuildError, BuildOptions};
 
 use super::arrays::Array;
 use super::data::{Best, Event, HEADER, MOST, Node, Pair, Part, Plan, Record, Reference};
 use super::executor::Executor;
+use super::first::Start;
 use super::kernel::{Kernel, Params};
 use super::piece::PIECE;
 use super::rank::RUN;
@@ -35,15 +35,15 @@ pub(crate) struct Finished {
     pub(crate) levels: Vec<LevelReport>,
 }
 
-/// Builds the tree of `mesh`.
+/// Builds the tree below a node.
 pub(crate) fn build<E: Executor>(
     device: &mut E,
-    mesh: &Mesh,
+    start: &Start,
     options: &BuildOptions,
     terms: Terms,
 ) -> Result<Finished, E::Error> {
-    let limits = Limits::new(mesh, options)?;
-    let triangles = mesh.triangles().len() as u32;
+    let limits = start.limits;
+    let triangles = start.triangles.len() as u32;
     let params = Params {
         max_leaf: u32::try_from(limits.max_leaf).unwrap_or(u32::MAX),
         clip: u32::from(limits.clip),
@@ -54,8 +54,7 @@ pub(crate) fn build<E: Executor>(
         next_records: 1,
         ..Params::default()
     };
-    let mesh_bytes = size_of_val(mesh.positions()) + size_of_val(mesh.triangles());
-    let room = terms.budget.saturating_sub(mesh_bytes as u64);
+    let room = terms.budget.saturating_sub(start.mesh_bytes());
     let (levels, reports) = (Vec::new(), Vec::new());
     let max_depth = limits.max_depth;
     let most_references = triangles;
@@ -70,8 +69,8 @@ pub(crate) fn build<E: Executor>(
         room,
         terms,
     };
-    let root = driver.root(mesh)?;
-    driver.levels(root, options)?;
+    let first = driver.first(start)?;
+    driver.levels(first, options)?;
     let finished = driver.pack()?;
     if let Some(report) = options.progress {
         report(1.0);
@@ -160,9 +159,9 @@ impl<E: Executor> Driver<'_, E> {
     }
 
     /// Builds all levels from one on; where memory is short, in batches \[Hou11].
-    fn levels(&mut self, root: Level, options: &BuildOptions) -> Result<(), E::Error> {
+    fn levels(&mut self, first: Level, options: &BuildOptions) -> Result<(), E::Error> {
         let mut parked: Vec<Level> = Vec::new();
-        let mut level = root;
+        let mut level = first;
         loop {
             if options.cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
                 return Err(BuildError::Cancelled.into());

@@ -1,39 +1,68 @@
-//! The first level: the root. And the events of a node that has none, sorted.
+//! The first level: one node. And the events of a node that has none, sorted.
 
 use bytemuck::{bytes_of, cast_slice};
 
-use kdray::Mesh;
-use kdray::build::ordered;
+use kdray::build::{Limits, ordered};
+use kdray::{Aabb, BuildError, BuildOptions, Mesh};
 
 use super::arrays::Array;
-use super::data::{Event, HEADER, Node, Reference};
+use super::data::{Event, HEADER, Node, Part, Reference};
 use super::driver::{Driver, Level, words};
 use super::executor::Executor;
 use super::{ends, flats, join, seed};
+
+/// The triangles below a node, each with one reference there.
+#[derive(Clone, Copy)]
+pub(crate) struct Start<'a> {
+    pub(crate) positions: &'a [[f32; 3]],
+    pub(crate) triangles: &'a [[u32; 3]],
+    /// Of the node.
+    pub(crate) bounds: Aabb,
+    pub(crate) depth: u32,
+    /// By reference, unless the node is the root: bounds of what is left of its triangle.
+    pub(crate) parts: &'a [Part],
+    pub(crate) limits: Limits,
+}
+
+impl<'a> Start<'a> {
+    /// The root of a mesh.
+    pub(crate) fn root(mesh: &'a Mesh, options: &BuildOptions) -> Result<Self, BuildError> {
+        let (positions, triangles) = (mesh.positions(), mesh.triangles());
+        let (bounds, limits) = (mesh.bounds(), Limits::new(mesh, options)?);
+        Ok(Self { positions, triangles, bounds, depth: 0, parts: &[], limits })
+    }
+
+    /// Bytes of the mesh.
+    pub(super) fn mesh_bytes(&self) -> u64 {
+        (size_of_val(self.positions) + size_of_val(self.triangles)) as u64
+    }
+}
 
 /// What the events of an axis are sorted in.
 const SORTED: [Array; 4] = [Array::Keys, Array::Values, Array::NextKeys, Array::NextValues];
 
 impl<E: Executor> Driver<'_, E> {
-    /// Brings the mesh to the device, and makes the root the level. It has no events yet.
-    pub(super) fn root(&mut self, mesh: &Mesh) -> Result<Level, E::Error> {
-        let triangles = self.params.triangles;
-        self.device.stage("events", 0);
-        self.device.upload(Array::Positions, cast_slice(mesh.positions()))?;
-        self.device.upload(Array::Triangles, cast_slice(mesh.triangles()))?;
-        let bounds = mesh.bounds();
-        let root = Node {
-            lower: bounds.lower.map(ordered),
+    /// Brings the triangles to the device, and makes their node the level. It has no events yet.
+    pub(super) fn first(&mut self, start: &Start) -> Result<Level, E::Error> {
+        let (triangles, depth) = (self.params.triangles, start.depth);
+        self.device.stage("events", depth);
+        self.device.upload(Array::Positions, cast_slice(start.positions))?;
+        self.device.upload(Array::Triangles, cast_slice(start.triangles))?;
+        if depth > 0 {
+            self.device.upload(Array::Bounds, cast_slice(start.parts))?;
+        }
+        let node = Node {
+            lower: start.bounds.lower.map(ordered),
             first: 0,
-            upper: bounds.upper.map(ordered),
+            upper: start.bounds.upper.map(ordered),
             count: triangles,
             fresh_first: 0,
             fresh_count: triangles,
         };
-        self.device.upload(Array::Nodes, cast_slice(bytes_of(&root)))?;
+        self.device.upload(Array::Nodes, cast_slice(bytes_of(&node)))?;
         self.device.reserve(Array::References, HEADER + words::<Reference>(triangles))?;
         self.run(&seed::SEED, triangles.max(1))?;
-        Ok(Level { nodes: 1, references: triangles, first_record: 0, depth: 0, is_narrow: true })
+        Ok(Level { nodes: 1, references: triangles, first_record: 0, depth, is_narrow: true })
     }
 
     /// Gives a narrow level the events of all axes.

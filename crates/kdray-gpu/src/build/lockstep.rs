@@ -7,6 +7,7 @@ use super::arrays::Array;
 use super::cpu::Twins;
 use super::driver::{Terms, build};
 use super::executor::Executor;
+use super::first::Start;
 use super::gpu::Gpu;
 use super::kernel::{Kernel, Params};
 use super::report::LevelReport;
@@ -123,7 +124,7 @@ impl Executor for Lockstep<'_> {
     }
 }
 
-fn lavapipe() -> Device {
+pub(super) fn lavapipe() -> Device {
     vulkan::set_up();
     let name = vulkan::override_name().unwrap_or_else(|| vulkan::LAVAPIPE.to_owned());
     let selection = name.parse().expect("every word is a selection");
@@ -140,7 +141,8 @@ fn check(
 ) -> (Vec<&'static str>, Vec<LevelReport>) {
     let mut lockstep = Lockstep::new(device, name);
     let terms = Terms { budget, with_teams, keeps_mesh: false };
-    let finished = build(&mut lockstep, mesh, options, terms);
+    let start = Start::root(mesh, options).expect("the options have a meaning");
+    let finished = build(&mut lockstep, &start, options, terms);
     let finished = finished.unwrap_or_else(|error| panic!("{name}: {error}"));
     let nodes: u32 = finished.levels.iter().map(|level| level.nodes).sum();
     let [all, _] = finished.counts;
@@ -155,7 +157,7 @@ fn kernels_do_what_their_twins_do() {
     for (index, scene) in scenes::all().enumerate() {
         let options = BuildOptions { clip: index % 8 != 7, ..BuildOptions::default() };
         for with_teams in [false, true] {
-            let budget = budget(&scene.mesh, &options);
+            let budget = budget(scene.mesh.triangles().len(), &options);
             seen.extend(check(&device, &scene, &options, budget, with_teams).0);
         }
     }

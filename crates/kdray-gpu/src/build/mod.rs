@@ -11,6 +11,7 @@ mod carry;
 mod choose;
 mod clip;
 mod cpu;
+mod crown;
 mod data;
 mod decide;
 mod driver;
@@ -73,6 +74,7 @@ use crate::primitives::{radix, scan};
 use crate::trace::Packed;
 use arrays::Array;
 use driver::{Finished, Terms};
+use first::Start;
 use gpu::Gpu;
 use spare::Spare;
 
@@ -142,7 +144,8 @@ const RETRIES: usize = 2;
 /// Builds the exact-SAH tree of `mesh` on a device, with the bytes of [`Tree::build`].
 ///
 /// Costs O(N log N) work, at most 40 dispatches and one read of a few words for each level of the
-/// tree. Of the options, builder and threads mean nothing here.
+/// tree. Of the options, builder and threads mean nothing here. Nodes near the root that are larger than
+/// what the device can bind are made by the CPU ([`BuildReport::crown`]).
 ///
 /// # Errors
 ///
@@ -176,8 +179,11 @@ pub fn build_reported(
     with_profile: bool,
 ) -> Result<(Tree, BuildReport), GpuError> {
     let wanted = Wanted { with_profile, keeps_mesh: false };
-    let (left, report, _) = build_in(Spare::default, device, mesh, options, wanted)?;
-    Ok((left.tree.read(device, mesh)?, report))
+    let start = Start::root(mesh, options)?;
+    match build_in(Spare::default, device, &start, options, wanted) {
+        Err(GpuError::Limit { .. }) => crown::build(device, mesh, options, with_profile),
+        built => built.and_then(|(left, report, _)| Ok((left.tree.read(device, mesh)?, report))),
+    }
 }
 
 /// What a build is to give beside the tree.
@@ -199,32 +205,32 @@ struct Left {
 fn build_in(
     mut spare: impl FnMut() -> Spare,
     device: &Device,
-    mesh: &Mesh,
+    start: &Start,
     options: &BuildOptions,
     wanted: Wanted,
 ) -> Result<(Left, BuildReport, Spare), GpuError> {
-    let mut room = budget(mesh, options);
+    let mut room = budget(start.triangles.len(), options);
     for _ in 0..RETRIES {
         let limits = (options.memory_budget, room);
         let mut gpu = Gpu::new(device, spare(), limits, wanted.with_profile);
-        match build_on(&mut gpu, mesh, options, (room, wanted.keeps_mesh)) {
+        match build_on(&mut gpu, start, options, (room, wanted.keeps_mesh)) {
             Err(error) if error.is_memory() => room = room / 4 * 3,
             built => return built.map(|(left, report)| (left, report, gpu.leave())),
         }
     }
     let mut gpu = Gpu::new(device, spare(), (options.memory_budget, 0), wanted.with_profile);
-    let (left, report) = build_on(&mut gpu, mesh, options, (0, wanted.keeps_mesh))?;
+    let (left, report) = build_on(&mut gpu, start, options, (0, wanted.keeps_mesh))?;
     Ok((left, report, gpu.leave()))
 }
 
 fn build_on(
     gpu: &mut Gpu,
-    mesh: &Mesh,
+    start: &Start,
     options: &BuildOptions,
     (budget, keeps_mesh): (u64, bool),
 ) -> Result<(Left, BuildReport), GpuError> {
     let terms = Terms { budget, with_teams: true, keeps_mesh };
-    let Finished { counts, levels } = driver::build(gpu, mesh, options, terms)?;
+    let Finished { counts, levels } = driver::build(gpu, start, options, terms)?;
     gpu.submit()?;
     let [nodes, references] =
         [Array::TreeNodes, Array::TreeReferences].map(|array| gpu.hand_over(array));
@@ -235,6 +241,7 @@ fn build_on(
         peak_bytes: gpu.peak_bytes,
         tree_bytes: tree.size_bytes(),
         readbacks: gpu.readbacks,
+        crown: 0,
         levels,
         profile: gpu.profile.take(),
     };
@@ -265,16 +272,18 @@ pub fn build_with_twins(
     with_teams: bool,
 ) -> Result<Tree, BuildError> {
     let mut twins = cpu::Twins::default();
-    let terms = Terms { budget: budget(mesh, options), with_teams, keeps_mesh: false };
-    let [nodes, references] = driver::build(&mut twins, mesh, options, terms)?.counts;
+    let budget = budget(mesh.triangles().len(), options);
+    let terms = Terms { budget, with_teams, keeps_mesh: false };
+    let start = Start::root(mesh, options)?;
+    let [nodes, references] = driver::build(&mut twins, &start, options, terms)?.counts;
     let nodes = &twins.arrays.of(Array::TreeNodes)[..nodes as usize];
     let references = &twins.arrays[Array::TreeReferences][..references as usize];
     Ok(Tree::from_parts(mesh, nodes.to_vec(), references.to_vec(), options.cost))
 }
 
-/// Bytes that the build should keep to.
-fn budget(mesh: &Mesh, options: &BuildOptions) -> u64 {
-    let usual = BYTES_PER_TRIANGLE * mesh.triangles().len() as u64;
+/// Bytes that the build of so many triangles should keep to.
+fn budget(triangles: usize, options: &BuildOptions) -> u64 {
+    let usual = BYTES_PER_TRIANGLE * triangles as u64;
     // Of a budget that must not be exceeded, an eighth is for what nobody can know beforehand.
     options.memory_budget.map_or(usual.max(LEAST_BYTES), |budget| budget / 8 * 7)
 }

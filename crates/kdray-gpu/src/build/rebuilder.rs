@@ -49,7 +49,7 @@ impl<'a> Rebuilder<'a> {
     ///
     /// # Errors
     ///
-    /// As [`build`](super::build()); the next build starts without memory then.
+    /// As [`Tracer::build`]; the next build starts without memory then.
     pub fn build(
         &mut self,
         mesh: &Mesh,

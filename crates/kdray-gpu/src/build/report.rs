@@ -11,6 +11,8 @@ pub struct BuildReport {
     pub tree_bytes: u64,
     /// How often the host waited for words of the device, the tree itself apart.
     pub readbacks: u64,
+    /// Nodes near the root that the CPU made, because the device cannot bind what they take.
+    pub crown: usize,
     /// The levels, in the order in which they were built.
     pub levels: Vec<LevelReport>,
     /// What the kernels took, if that was asked for.

@@ -2,6 +2,7 @@
 
 use kdray::{BuildOptions, Mesh};
 
+use super::first::Start;
 use super::spare::Spare;
 use super::{BuildReport, Wanted, build_in};
 use crate::device::Device;
@@ -18,7 +19,8 @@ pub(super) fn build<'a>(
     mesh: &Mesh,
     options: &BuildOptions,
 ) -> Result<(Tracer<'a>, BuildReport, Spare), GpuError> {
-    let (left, report, spare) = build_in(spare, device, mesh, options, STAYS)?;
+    let start = Start::root(mesh, options)?;
+    let (left, report, spare) = build_in(spare, device, &start, options, STAYS)?;
     device.wait()?;
     let on_device = left.mesh.expect("it was to stay");
     Ok((Tracer::over(device, Scene::new(mesh, on_device, left.tree)), report, spare))
@@ -30,7 +32,7 @@ impl<'a> Tracer<'a> {
     ///
     /// # Errors
     ///
-    /// As [`build`](super::build()).
+    /// As [`build`](super::build()), and if the mesh or its tree is larger than what the device can bind.
     ///
     /// ```no_run
     /// use kdray::{BuildOptions, Mesh, Ray};

@@ -1,6 +1,6 @@
 //! A mesh and its tree in the memory of a device.
 
-use kdray::{Aabb, Cost, Mesh, Tree};
+use kdray::{Aabb, Cost, Mesh, Node, Tree};
 
 use crate::device::{Buffer, Device};
 use crate::error::GpuError;
@@ -28,13 +28,19 @@ impl Packed {
 
     /// Reads the tree, which is that of `mesh`.
     pub(crate) fn read(&self, device: &Device, mesh: &Mesh) -> Result<Tree, GpuError> {
+        let (nodes, references) = self.lists(device)?;
+        Ok(Tree::from_parts(mesh, nodes, references, self.cost))
+    }
+
+    /// Reads nodes and references.
+    pub(crate) fn lists(&self, device: &Device) -> Result<(Vec<Node>, Vec<u32>), GpuError> {
         let [nodes, references] = self.counts.map(u64::from);
         let nodes = device.read(&self.nodes.words(0, 2 * nodes))?;
         let references = match references {
             0 => Vec::new(),
             count => device.read(&self.references.words(0, count))?,
         };
-        Ok(Tree::from_parts(mesh, nodes, references, self.cost))
+        Ok((nodes, references))
     }
 }
 

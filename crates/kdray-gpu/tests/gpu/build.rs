@@ -1,9 +1,11 @@
 //! The device gives the bytes of the exact builder.
 
+use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use kdray::{BuildError, BuildOptions, Mesh, Tree};
 use kdray_gpu::{Device, GpuError, Limits, build, build_reported, prepare};
+use kdray_mesh::generate;
 use kdray_test::{Scene, presets, scenes, shared, vulkan};
 
 use crate::support::{lavapipe, open, swiftshader};
@@ -165,24 +167,62 @@ fn the_peak_is_that_of_the_device() {
     }
 }
 
-/// A device that binds little cuts levels to what it may bind, and says what a mesh would need that
-/// is larger than that by itself.
+/// Opens lavapipe as a device that binds no more than so many bytes.
+fn binding(binding_bytes: u64) -> Device {
+    open(vulkan::LAVAPIPE, &Limits { binding_bytes, ..Limits::PORTABLE })
+}
+
+/// A device that binds little cuts levels to what it may bind.
 #[test]
-fn small_bindings_make_batches_or_a_clear_error() {
-    let binding_bytes = 1 << 20;
-    let limits = Limits { binding_bytes, ..Limits::PORTABLE };
-    let device = open(vulkan::LAVAPIPE, &limits);
-    let options = BuildOptions::default();
+fn small_bindings_make_batches() {
     let mesh = Scene::open("soup", &scenes::soup_of_size(20_000, 1, 0.02)).mesh;
-    let (tree, report) = build_reported(&device, &mesh, &options, false).expect("it fits");
+    let options = BuildOptions::default();
+    let built = build_reported(&binding(1 << 20), &mesh, &options, false);
+    let (tree, report) = built.expect("it fits");
     assert!(tree == exact(&mesh, &options));
     assert_eq!(report.levels[1].nodes, 1, "the root's halves are built one after the other");
-    let mesh = Scene::open("soup", &scenes::soup_of_size(100_000, 1, 0.02)).mesh;
-    let error = build(&device, &mesh, &options).unwrap_err();
-    let GpuError::Limit { limit: "binding_bytes", asked, offered, .. } = error else {
-        panic!("{error}")
-    };
-    assert_eq!((asked, offered), (3 * 12 * 100_000, binding_bytes));
+    assert_eq!(report.crown, 0);
+}
+
+/// Where mesh or lists of the root are larger than that, the device builds what is below the nodes
+/// near the root.
+#[test]
+fn meshes_larger_than_a_binding() {
+    let device = binding(1 << 20);
+    let soup = scenes::soup_of_size(100_000, 1, 0.02);
+    for (name, max_depth) in [("soup", None), ("shallow soup", Some(2))] {
+        let mesh = Scene::open(name, &soup).mesh;
+        let seen = Mutex::new(Vec::new());
+        let progress = |part| seen.lock().expect("no thread panics").push(part);
+        let options =
+            BuildOptions { max_depth, progress: Some(&progress), ..BuildOptions::default() };
+        let (tree, report) = build_reported(&device, &mesh, &options, true).expect("it is built");
+        assert!(tree == exact(&mesh, &options), "{name}");
+        assert!(report.crown > 2, "{name}: {report:?}");
+        assert_eq!(report.tree_bytes, tree.size_bytes() as u64);
+        let levels = report.levels.iter().map(|level| level.depth);
+        assert!(levels.min() >= Some(1), "{name}");
+        let seen = std::mem::take(&mut *seen.lock().expect("no thread panics"));
+        assert!(seen.iter().all(|part| (0.0..=1.0).contains(part)), "{seen:?}");
+        assert_eq!(seen.last(), Some(&1.0));
+        let Err(error) = kdray_gpu::Tracer::build(&device, &mesh, &options) else {
+            panic!("{name} stays nowhere")
+        };
+        assert!(matches!(error, GpuError::Limit { limit: "binding_bytes", .. }), "{error}");
+    }
+}
+
+/// Takes minutes on two cores, and 6 GB.
+#[test]
+#[ignore = "long"]
+fn twenty_million_triangles_under_a_small_budget() {
+    let mesh = Scene::open("knot", &generate::torus_knot([2, 3], 40_000, 250)).mesh;
+    let budget = 20 * mesh.triangles().len() as u64;
+    let options = BuildOptions { memory_budget: Some(budget), ..BuildOptions::default() };
+    let (tree, report) = build_reported(lavapipe(), &mesh, &options, false).expect("it is built");
+    println!("{} nodes by the CPU, peak {}", report.crown, report.peak_bytes);
+    assert!(report.peak_bytes <= budget);
+    assert!(tree == exact(&mesh, &BuildOptions::default()));
 }
 
 #[test]

@@ -21,7 +21,11 @@ pub use options::{BuildOptions, BuildReport, Builder, MAX_DEPTH};
 
 // What a builder on another device shares with these, to the last bit; not a stable interface.
 #[doc(hidden)]
-pub use {cost::NodeCost, exact::ordered, exact::position_of, options::Limits};
+pub use {
+    cost::NodeCost,
+    exact::{Below, Crown, ordered, position_of},
+    options::Limits,
+};
 
 use crate::geometry::Mesh;
 use crate::tree::Tree;

@@ -14,6 +14,8 @@ use super::profile::{self, Profile};
 pub(crate) struct GpuFigures {
     pub(crate) adapter: String,
     pub(crate) driver: String,
+    /// Nodes near the root that the CPU made, because the device cannot bind what they take.
+    pub(crate) crown: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) profile: Option<Profile>,
 }
@@ -34,6 +36,7 @@ pub(crate) fn build(
     let gpu = GpuFigures {
         adapter: adapter.name.clone(),
         driver: adapter.driver.clone(),
+        crown: report.crown,
         profile: kernels.map(|kernels| Profile::new(&report, &kernels, arguments.bandwidth)),
     };
     Ok(Built { tree, build_s, peak_bytes: report.peak_bytes, gpu: Some(gpu) })

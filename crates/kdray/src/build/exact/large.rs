@@ -4,7 +4,27 @@ use super::set::{OwnedSet, Set, sorted_events};
 use super::split::{Sizes, Workspace};
 use super::sweep::{Candidate, cheapest, sweep};
 use super::{BuildError, Context, Growth, Node, NodeCost, small, sort};
-use crate::geometry::Aabb;
+
+/// What is made of nodes.
+pub(super) trait Maker: Sync {
+    type Subtree: Send;
+
+    /// The most references of a node that is not cut here.
+    fn most(&self) -> usize;
+    /// What such a node becomes.
+    fn below(&self, context: &Context, set: Set, node: Node) -> Result<Self::Subtree, BuildError>;
+    fn leaf(&self, context: &Context, set: &Set, node: &Node) -> Result<Self::Subtree, BuildError>;
+    /// An inner node over two subtrees.
+    fn joined(
+        &self,
+        context: &Context,
+        candidate: &Candidate,
+        children: [Self::Subtree; 2],
+    ) -> Result<Self::Subtree, BuildError>;
+}
+
+/// Makes the whole tree.
+pub(super) struct Whole;
 
 /// Subtrees of at most this many references are small: one task, in scratch memory. More makes
 /// fewer, longer tasks; less leaves more nodes to lists of their own.
@@ -16,8 +36,8 @@ struct Booked {
     bytes: usize,
 }
 
-/// Builds the whole tree.
-pub(super) fn build(context: &Context) -> Result<Growth, BuildError> {
+/// Builds from the root on.
+pub(super) fn build<M: Maker>(context: &Context, maker: &M) -> Result<M::Subtree, BuildError> {
     let mesh = context.mesh;
     let bytes = OwnedSet::bytes(mesh.triangles().len());
     context.meter.charge("events", bytes)?;
@@ -27,7 +47,8 @@ pub(super) fn build(context: &Context) -> Result<Growth, BuildError> {
     let [x, y, z] = on_axes(context, |axis| sorted_events(mesh, axis));
     context.meter.release(sort_bytes);
     let set = OwnedSet::root(mesh, [x, y, z]);
-    subtree(context, Booked { set, bytes }, Node { bounds: mesh.bounds(), depth: 0, share: 1.0 })
+    let root = Node { bounds: mesh.bounds(), depth: 0, share: 1.0 };
+    subtree(context, maker, Booked { set, bytes }, root)
 }
 
 /// Runs `work` for the three axes, at the same time if the build has threads.
@@ -36,20 +57,25 @@ fn on_axes<T: Send>(context: &Context, work: impl Fn(usize) -> T + Sync) -> [T; 
     [x, y, z]
 }
 
-fn subtree(context: &Context, owned: Booked, node: Node) -> Result<Growth, BuildError> {
+fn subtree<M: Maker>(
+    context: &Context,
+    maker: &M,
+    owned: Booked,
+    node: Node,
+) -> Result<M::Subtree, BuildError> {
     let set = owned.set.as_set();
-    if set.triangles.len() <= SMALL {
-        let growth = small::build(context, set, node);
+    if set.triangles.len() <= maker.most() {
+        let made = maker.below(context, set, node);
         context.meter.release(owned.bytes);
-        return growth;
+        return made;
     }
     context.meter.check_cancelled()?;
     let cost = context.prices(&node, set.triangles.len());
     let plane = cost.and_then(|cost| Some((cheapest_plane(context, &set, &node, &cost)?, cost)));
     let Some((candidate, cost)) = plane else {
-        let growth = leaf(context, &set, &node);
+        let leaf = maker.leaf(context, &set, &node);
         context.meter.release(owned.bytes);
-        return growth;
+        return leaf;
     };
     let work_bytes = Workspace::bytes_for(set.triangles.len());
     context.meter.charge("split", work_bytes)?;
@@ -59,16 +85,16 @@ fn subtree(context: &Context, owned: Booked, node: Node) -> Result<Growth, Build
     let (left, right) = if sizes.is_cut_off() {
         context.meter.release(work_bytes);
         drop(workspace);
-        cut_off(context, owned, children, sizes)
+        cut_off(context, maker, owned, children, sizes)
     } else {
         let [left, right] = split(context, &set, workspace, sizes)?;
         context.meter.release(work_bytes);
         context.meter.release(owned.bytes);
         drop(owned);
-        context
-            .join(|| subtree(context, left, children[0]), || subtree(context, right, children[1]))
+        let below = |owned, child| move || subtree(context, maker, owned, child);
+        context.join(below(left, children[0]), below(right, children[1]))
     };
-    joined(context, &candidate, &left?, &right?)
+    maker.joined(context, &candidate, [left?, right?])
 }
 
 fn cheapest_plane(context: &Context, set: &Set, node: &Node, cost: &NodeCost) -> Option<Candidate> {
@@ -76,29 +102,20 @@ fn cheapest_plane(context: &Context, set: &Set, node: &Node, cost: &NodeCost) ->
     cheapest(by_axis, cost.leaf(set.triangles.len()))
 }
 
-fn leaf(context: &Context, set: &Set, node: &Node) -> Result<Growth, BuildError> {
-    let mut growth = Growth::default();
-    growth.push_leaf(set.triangles, &set.bounds());
-    context.meter.charge("tree", growth.capacity_bytes())?;
-    context.meter.advance(node.share);
-    Ok(growth)
-}
-
 /// One child is empty and the other has the very lists of the node.
-fn cut_off(
+fn cut_off<M: Maker>(
     context: &Context,
+    maker: &M,
     owned: Booked,
     [left, right]: [Node; 2],
     sizes: Sizes,
-) -> (Result<Growth, BuildError>, Result<Growth, BuildError>) {
-    let mut empty = Growth::default();
-    empty.push_leaf(&[], &Aabb::EMPTY);
-    let charged = context.meter.charge("tree", empty.capacity_bytes());
-    let empty = charged.map(|()| empty);
+) -> (Result<M::Subtree, BuildError>, Result<M::Subtree, BuildError>) {
     if sizes.left == 0 {
-        (empty, subtree(context, owned, right))
+        let empty = maker.leaf(context, &Set::EMPTY, &left);
+        (empty, subtree(context, maker, owned, right))
     } else {
-        (subtree(context, owned, left), empty)
+        let empty = maker.leaf(context, &Set::EMPTY, &right);
+        (subtree(context, maker, owned, left), empty)
     }
 }
 
@@ -136,24 +153,43 @@ fn split(
     Ok([Booked { set: left, bytes: left_bytes }, Booked { set: right, bytes: right_bytes }])
 }
 
-/// An inner node over two finished subtrees.
-fn joined(
-    context: &Context,
-    candidate: &Candidate,
-    left: &Growth,
-    right: &Growth,
-) -> Result<Growth, BuildError> {
-    let mut growth = Growth {
-        nodes: Vec::with_capacity(1 + left.nodes.len() + right.nodes.len()),
-        references: Vec::with_capacity(left.references.len() + right.references.len()),
-        parts: Vec::with_capacity(left.parts.len() + right.parts.len()),
-    };
-    context.meter.charge("tree", growth.capacity_bytes())?;
-    let place = growth.push_inner(candidate.axis, candidate.position);
-    growth.append(left);
-    growth.set_right(place);
-    growth.append(right);
-    context.meter.release(left.capacity_bytes() + right.capacity_bytes());
-    growth.check_size()?;
-    Ok(growth)
+impl Maker for Whole {
+    type Subtree = Growth;
+
+    fn most(&self) -> usize {
+        SMALL
+    }
+
+    fn below(&self, context: &Context, set: Set, node: Node) -> Result<Growth, BuildError> {
+        small::build(context, set, node)
+    }
+
+    fn leaf(&self, context: &Context, set: &Set, node: &Node) -> Result<Growth, BuildError> {
+        let mut growth = Growth::default();
+        growth.push_leaf(set.triangles, &set.bounds());
+        context.meter.charge("tree", growth.capacity_bytes())?;
+        context.meter.advance(node.share);
+        Ok(growth)
+    }
+
+    fn joined(
+        &self,
+        context: &Context,
+        candidate: &Candidate,
+        [left, right]: [Growth; 2],
+    ) -> Result<Growth, BuildError> {
+        let mut growth = Growth {
+            nodes: Vec::with_capacity(1 + left.nodes.len() + right.nodes.len()),
+            references: Vec::with_capacity(left.references.len() + right.references.len()),
+            parts: Vec::with_capacity(left.parts.len() + right.parts.len()),
+        };
+        context.meter.charge("tree", growth.capacity_bytes())?;
+        let place = growth.push_inner(candidate.axis, candidate.position);
+        growth.append(&left);
+        growth.set_right(place);
+        growth.append(&right);
+        context.meter.release(left.capacity_bytes() + right.capacity_bytes());
+        growth.check_size()?;
+        Ok(growth)
+    }
 }

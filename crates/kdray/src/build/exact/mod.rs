@@ -8,6 +8,7 @@
 //! to be counted at every plane.
 
 mod columns;
+mod crown;
 mod event;
 mod lanes;
 mod large;
@@ -26,7 +27,9 @@ use super::meter::Meter;
 use super::options::Limits;
 use super::{BuildError, Growth, NodeCost};
 use crate::geometry::{Aabb, Mesh};
+pub use crown::{Below, Crown};
 pub use event::{ordered, position_of};
+use large::{Maker, Whole};
 use small::Small;
 
 /// Everything a task of the build needs to know.
@@ -83,13 +86,23 @@ impl Context<'_> {
 
 /// The exact tree.
 pub(super) fn build(mesh: &Mesh, limits: &Limits, meter: &Meter) -> Result<Growth, BuildError> {
+    make(&Whole, mesh, limits, meter)
+}
+
+/// What `maker` makes of the root and what is below.
+fn make<M: Maker>(
+    maker: &M,
+    mesh: &Mesh,
+    limits: &Limits,
+    meter: &Meter,
+) -> Result<M::Subtree, BuildError> {
     let context = Context { mesh, limits, meter, idle: Mutex::default() };
     if limits.threads == 1 {
-        return large::build(&context);
+        return large::build(&context, maker);
     }
     let pool =
         rayon::ThreadPoolBuilder::new().num_threads(limits.threads).build().map_err(|error| {
             BuildError::Threads { threads: limits.threads, reason: error.to_string() }
         })?;
-    pool.install(|| large::build(&context))
+    pool.install(|| large::build(&context, maker))
 }

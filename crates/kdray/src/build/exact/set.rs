@@ -16,7 +16,23 @@ pub(super) struct Set<'a> {
 }
 
 impl Set<'_> {
-    /// Bounds of the references.
+    /// The lists of a node without references.
+    pub(super) const EMPTY: Set<'static> = Set { triangles: &[], events: [&[], &[], &[]] };
+
+    /// Bounds of each reference.
+    pub(super) fn parts(&self) -> Vec<Aabb> {
+        let mut parts = vec![Aabb::EMPTY; self.triangles.len()];
+        for (axis, events) in self.events.iter().enumerate() {
+            for event in *events {
+                let Aabb { lower, upper } = &mut parts[event.reference()];
+                let end = if event.enters() { lower } else { upper };
+                end[axis] = position_of(event.ordered_position());
+            }
+        }
+        parts
+    }
+
+    /// Bounds of all references.
     pub(super) fn bounds(&self) -> Aabb {
         let mut bounds = Aabb::EMPTY;
         for (axis, events) in self.events.iter().enumerate() {

@@ -95,7 +95,8 @@ impl Subtree<'_> {
         let [left, right] = node.cut(candidate.axis, candidate.position, counts);
         let place = self.growth.push_inner(candidate.axis, candidate.position);
         if sizes.is_cut_off() {
-            let (left_set, right_set) = if sizes.left == 0 { (EMPTY, set) } else { (set, EMPTY) };
+            let (left_set, right_set) =
+                if sizes.left == 0 { (Set::EMPTY, set) } else { (set, Set::EMPTY) };
             self.node(left_set, left, scratch.reborrow())?;
             self.growth.set_right(place);
             return self.node(right_set, right, scratch);
@@ -144,6 +145,3 @@ impl Subtree<'_> {
         ([left_room.into_set(left), right_room.into_set(right)], scratch)
     }
 }
-
-/// The lists of a node without references.
-const EMPTY: Set<'static> = Set { triangles: &[], events: [&[], &[], &[]] };
