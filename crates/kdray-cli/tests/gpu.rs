@@ -38,6 +38,7 @@ fn the_gpu_writes_the_file_of_the_cpu() {
         assert!(report[name].as_str().is_some_and(|text| !text.is_empty()), "{report}");
     }
     assert!(report["peak_bytes"].as_u64() > report["tree_bytes"].as_u64(), "{report}");
+    assert_eq!(report["crown"], 0, "the device can bind what it takes");
     assert!(report.get("profile").is_none(), "nobody asked");
 }
 
