@@ -1,4 +1,4 @@
-"""Puts the table of the newest record where a page says `TABLE`."""
+"""Puts the tables of the newest records where a page says `TABLE`."""
 
 import json
 import sys
@@ -11,10 +11,12 @@ BENCH = Path(__file__).parents[1] / "bench"
 def on_page_markdown(markdown: str, **_: Any) -> str:
     if "\nTABLE\n" not in markdown:
         return markdown
-    records = sorted((BENCH / "records").glob("*.json"))
+    records = [json.loads(path.read_text()) for path in sorted((BENCH / "records").glob("*.json"))]
     if not records:
         raise SystemExit("docs: there is no record to show")
-    return markdown.replace("\nTABLE\n", "\n" + table(json.loads(records[-1].read_text())) + "\n")
+    newest = max(record["date"] for record in records)
+    tables = [table(record) for record in records if record["date"] == newest]
+    return markdown.replace("\nTABLE\n", "\n" + "\n\n".join(tables) + "\n")
 
 
 def table(record: dict[str, Any]) -> str:
