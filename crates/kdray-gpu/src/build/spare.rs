@@ -25,8 +25,8 @@ impl Spare {
         Self { buffers: Some(Vec::new()), ..Self::default() }
     }
 
-    /// The smallest buffer of at least `bytes`. However large it is: what sufficed once suffices again
-    /// then, whatever came in between.
+    /// The smallest buffer of at least `bytes`, however large it is: where that was bounded, what came in
+    /// between decided whether a need found room when it came again.
     pub(crate) fn take(&mut self, bytes: u64) -> Option<Buffer> {
         let buffers = self.buffers.as_mut()?;
         buffers.extend(self.lent.extract_if(.., |buffer| !buffer.is_shared()));
