@@ -14,7 +14,8 @@ pub(super) struct Apart<E> {
     pub(super) most: E,
 }
 
-/// Bounds for the triangles of `block` from `point`, which is the same in all lanes.
+/// Bounds for the triangles of `block` from `point`, which is the same in all lanes; not numbers
+/// where lanes are free.
 #[inline(always)]
 pub(super) fn apart<E: Eights>(block: &Block, point: &[E; 3]) -> Apart<E> {
     let corners = block.corners();
@@ -22,7 +23,9 @@ pub(super) fn apart<E: Eights>(block: &Block, point: &[E; 3]) -> Apart<E> {
     let start = by_axis!(|axis| a[axis] - point[axis]);
     let ab = by_axis!(|axis| point[0].load(&corners[1][axis]) - a[axis]);
     let ac = by_axis!(|axis| point[0].load(&corners[2][axis]) - a[axis]);
-    Triangles::new(start, ab, ac).apart()
+    let Apart { least, most } = Triangles::new(start, ab, ac).apart();
+    // Of free lanes nothing is near: where the other is not a number, the greater is not.
+    Apart { least: least.max(a[0] * a[0].all(0.0)), most }
 }
 
 /// The corners as seen from the point: `start`, `start + ab` and `start + ac`; and products.
@@ -187,6 +190,15 @@ mod tests {
             }
         }
         close
+    }
+
+    #[test]
+    fn nothing_is_near_in_free_lanes() {
+        let corners = [[1.0, 2.0, 3.0], [4.0, 5.0, 7.0], [7.0, -2.0, 1.0]];
+        let block = Block::new(&[0, 1, 2], true, |_| corners);
+        let point = [0.5, 0.5, 0.5].map(|number| Array([number; 8]));
+        let Apart { least, .. } = apart(&block, &point);
+        assert_eq!(least.is_at_most(Array([f32::INFINITY; 8])), 0b111);
     }
 
     #[test]

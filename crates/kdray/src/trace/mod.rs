@@ -33,9 +33,10 @@
 //! `collapse` lays the tree out in the nodes of eight boxes of `wide`; `prepare` makes of a ray
 //! what traversal needs; `traverse` visits the leaves along it from front to back, `walk`ing `step`
 //! by `step`, and `stream` does so for several rays at a time, some of them as a `packet` or a
-//! `wave`. `block` filters the triangles of a leaf eight at a time, and `simd` says with which
-//! instructions, those of NEON in `neon`; `vector` is arithmetic on eight or sixteen numbers, and
-//! `sift` says by it which triangles may be hit. `intersect` says for one triangle what a hit is:
+//! `wave`. `block` holds the triangles of a leaf, eight at a time, and `filter` finds those that a ray
+//! hits; `simd` says with which instructions, those of NEON in `neon`; `vector` is arithmetic on eight
+//! or sixteen numbers, `sift` says by it which triangles may be hit, and `located` where.
+//! `intersect` says for one triangle what a hit is:
 //! it is the definition that everything else is tested against. `hits` keeps what the queries want
 //! of the hits. `leaves` is the same visit for whoever asks, in strict order. `near` visits the
 //! leaves around a point, for the queries of `proximity`: `tilt` has second boxes along the
@@ -49,10 +50,14 @@ mod block;
 mod closest;
 mod collapse;
 mod eights;
+#[cfg(target_arch = "x86_64")]
+mod filter;
 mod grid;
 mod hits;
 mod intersect;
 mod leaves;
+#[cfg(target_arch = "x86_64")]
+mod located;
 mod near;
 #[cfg(target_arch = "aarch64")]
 mod neon;

@@ -8,7 +8,7 @@ use super::stack::Stack;
 use super::step::{Met, nearer_of_two};
 use super::vector::{Arithmetic, Eight, Mask, Numbers, Vector};
 use super::wide::{Child, Wide};
-use crate::geometry::Ray;
+use crate::geometry::{Hit, Ray};
 
 /// A ray ready for boxes, in every lane.
 pub(super) struct SlabLanes {
@@ -25,13 +25,6 @@ pub(super) struct ShearLanes {
     origin: [Eight; 3],
     slope: [Eight; 2],
     t_per_z: Eight,
-}
-
-impl AsRef<Shear> for ShearLanes {
-    #[inline(always)]
-    fn as_ref(&self) -> &Shear {
-        &self.shear
-    }
 }
 
 impl Neon {
@@ -131,13 +124,30 @@ impl Simd for Neon {
     }
 
     #[inline(always)]
-    fn filter(self, block: &Block, ray: &ShearLanes, [t_min, t_max]: [f32; 2]) -> Filtered {
+    fn filter(
+        self,
+        block: &Block,
+        ray: &ShearLanes,
+        [t_min, t_max]: [f32; 2],
+        _: bool,
+    ) -> Filtered {
         let corners = block.corners().each_ref().map(|rows| {
             let corner = ray.shear.axes.map(|axis| self.load(&rows[axis]));
             sheared(corner, &ray.origin, &ray.slope)
         });
         let interval = [self.all(t_min), self.all(t_max)];
-        let Sifted { maybe, surely, inside, early } = sift(&corners, ray.t_per_z, interval);
-        Filtered { maybe, surely, inside, earliest: early.numbers().0 }
+        let (Sifted { maybe, surely, inside }, early) = sift(&corners, ray.t_per_z, interval);
+        Filtered { maybe, surely, inside, earliest: early.numbers().0, ..Filtered::NONE }
+    }
+
+    #[inline(always)]
+    fn hit(
+        self,
+        block: &Block,
+        lane: usize,
+        filtered: &Filtered,
+        (_, ray): (&Ray, &ShearLanes),
+    ) -> Option<Hit> {
+        block.hit(lane, filtered.surely(lane), &ray.shear)
     }
 }

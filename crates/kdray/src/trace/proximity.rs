@@ -2,7 +2,7 @@
 
 use super::Tracer;
 use super::apart::apart;
-use super::block::{Block, LANES};
+use super::block::Block;
 use super::closest::{Search, Seeds};
 use super::eights::Eights;
 use super::near::{NearVisitor, blocks_of, visit_box, visit_near};
@@ -100,7 +100,7 @@ impl Tracer {
             return;
         }
         visit_box(&self.trip.layout, region, &mut |block| {
-            for lane in 0..LANES {
+            for lane in block.places() {
                 let (triangle, corners) = block.triangle(lane);
                 if overlaps(&corners, region) {
                     triangles.push(triangle);

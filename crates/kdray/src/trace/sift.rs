@@ -2,16 +2,13 @@
 
 use super::vector::{Mask, Vector};
 
-/// Lanes whose ray may hit its triangle in the interval that was asked for.
-pub(super) struct Sifted<V> {
-    /// A bit a lane; the same below.
+/// Lanes whose ray may hit its triangle in the interval that was asked for, a bit each.
+pub(super) struct Sifted {
     pub(super) maybe: u32,
     /// Those whose line crosses for certain, wherever.
     pub(super) surely: u32,
     /// Those that are hit in the interval for certain.
     pub(super) inside: u32,
-    /// No hit of a lane comes before.
-    pub(super) early: V,
 }
 
 /// A corner in ray space, with the arithmetic of [`Shear`](super::prepare::Shear).
@@ -28,34 +25,51 @@ fn edge<V: Vector>(p: [V; 3], q: [V; 3]) -> V {
 
 /// The lanes whose edge functions do not differ in sign, with the arithmetic of
 /// [`crossing`](super::intersect::crossing), but for those that are hit before or after the interval
-/// for certain. Corners are in ray space.
+/// for certain; and a `t` that none of their hits comes before. Corners are in ray space.
 #[inline(always)]
-pub(super) fn sift<V: Vector>(
-    corners: &[[V; 3]; 3],
-    t_per_z: V,
-    [t_min, t_max]: [V; 2],
-) -> Sifted<V> {
-    let (edges, maybe, surely) = signs(corners);
-    if maybe.bits() == 0 {
-        return Sifted { maybe: 0, surely: 0, inside: 0, early: t_per_z };
+pub(super) fn sift<V: Vector>(corners: &[[V; 3]; 3], t_per_z: V, interval: [V; 2]) -> (Sifted, V) {
+    let crossed = crossed(corners);
+    if crossed.maybe.bits() == 0 {
+        return (Sifted { maybe: 0, surely: 0, inside: 0 }, t_per_z);
     }
-    let (early, late) = times(corners, &edges, t_per_z);
-    let outside = late.is_less(t_min).or(t_max.is_less(early));
-    let inside = t_min.is_at_most(early).and(late.is_at_most(t_max)).and(surely);
-    let maybe = maybe.and_not(outside).bits();
-    Sifted { maybe, surely: surely.bits(), inside: inside.bits(), early }
+    crossed_between(corners, &crossed, t_per_z, interval)
 }
 
-/// Edge functions, the lanes where they do not differ in sign, and those of them where none is zero.
+/// What the edge functions of triangles tell.
+pub(super) struct Crossed<V: Vector> {
+    edges: [V; 3],
+    /// Where they do not differ in sign.
+    pub(super) maybe: V::Mask,
+    /// Those of them where none is zero.
+    pub(super) surely: V::Mask,
+}
+
+/// Corners are in ray space.
 #[inline(always)]
-pub(super) fn signs<V: Vector>(corners: &[[V; 3]; 3]) -> ([V; 3], V::Mask, V::Mask) {
+pub(super) fn crossed<V: Vector>(corners: &[[V; 3]; 3]) -> Crossed<V> {
     let [a, b, c] = *corners;
     let edges = [edge(c, b), edge(a, c), edge(b, a)];
     let lowest = edges[0].min(edges[1]).min(edges[2]);
     let highest = edges[0].max(edges[1]).max(edges[2]);
     let zero = lowest.all(0.0);
     let maybe = zero.is_at_most(lowest).or(highest.is_at_most(zero));
-    (edges, maybe, zero.is_less(lowest).or(highest.is_less(zero)))
+    Crossed { edges, maybe, surely: zero.is_less(lowest).or(highest.is_less(zero)) }
+}
+
+/// What [`sift`] gives, of triangles some of which may be crossed.
+#[inline(always)]
+pub(super) fn crossed_between<V: Vector>(
+    corners: &[[V; 3]; 3],
+    crossed: &Crossed<V>,
+    t_per_z: V,
+    [t_min, t_max]: [V; 2],
+) -> (Sifted, V) {
+    let Crossed { edges, maybe, surely } = crossed;
+    let (early, late) = times(corners, edges, t_per_z);
+    let outside = late.is_less(t_min).or(t_max.is_less(early));
+    let inside = t_min.is_at_most(early).and(late.is_at_most(t_max)).and(*surely);
+    let maybe = maybe.and_not(outside).bits();
+    (Sifted { maybe, surely: surely.bits(), inside: inside.bits() & maybe }, early)
 }
 
 /// Between which `t` the line of a ray crosses triangles, given their corners in ray space and

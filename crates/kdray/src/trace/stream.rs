@@ -8,10 +8,10 @@
 use super::hits::Counted;
 #[cfg(target_arch = "x86_64")]
 use super::packet;
-#[cfg(target_arch = "x86_64")]
-use super::simd::Avx2;
 #[cfg(target_arch = "aarch64")]
 use super::simd::Best;
+#[cfg(target_arch = "x86_64")]
+use super::simd::{Avx2, Avx512};
 use super::simd::{Plain, Simd};
 use super::stack::Stack;
 use super::traverse::{Trip, Visitor, traverse};
@@ -45,6 +45,11 @@ pub(super) fn trace<V: Visitor>(
     }
     if !is_worth_turns(trip, rays) {
         return one_by_one(trip, rays, begin, end);
+    }
+    #[cfg(target_arch = "x86_64")]
+    if let Some(proof) = trip.simd.avx512() {
+        // SAFETY: the processor has AVX-512.
+        return unsafe { stream_avx512(proof.into(), trip, rays, begin, end) };
     }
     #[cfg(target_arch = "x86_64")]
     if let Some(proof) = trip.simd.avx2() {
@@ -182,6 +187,18 @@ fn go_the_same_way(rays: &[Ray]) -> bool {
 #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
 fn stream_avx2<V: Visitor>(
     simd: Avx2<V>,
+    trip: &Trip,
+    rays: &[Ray],
+    begin: impl FnMut(usize, &Ray) -> Option<V>,
+    end: impl FnMut(usize, V),
+) {
+    stream_with(simd, trip, rays, begin, end);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,lzcnt,popcnt")]
+fn stream_avx512<V: Visitor>(
+    simd: Avx512<V>,
     trip: &Trip,
     rays: &[Ray],
     begin: impl FnMut(usize, &Ray) -> Option<V>,

@@ -125,7 +125,7 @@ impl Tilt {
         let mut lower = [zero.all(f32::INFINITY); 3];
         let mut upper = [zero.all(f32::NEG_INFINITY); 3];
         let mut size = zero;
-        for corner in blocks.iter().flat_map(Block::corners) {
+        for corner in blocks.iter().flat_map(Block::filled_corners) {
             let way = by_axis!(|axis| Array(corner[axis]) - zero.all(self.center[axis]));
             for axis in 0..3 {
                 let [x, y, z] = self.axes[axis].map(|number| zero.all(number));
@@ -149,7 +149,7 @@ impl Tilt {
 /// Sums of normals as long as areas, lane by lane, each turned to the side of those before.
 fn add_normals(mut sums: [Array; 3], blocks: &[Block]) -> [Array; 3] {
     let zero = Array([0.0; 8]);
-    for [a, b, c] in blocks.iter().map(Block::corners) {
+    for [a, b, c] in blocks.iter().map(Block::filled_corners) {
         let ab = by_axis!(|axis| Array(b[axis]) - Array(a[axis]));
         let ac = by_axis!(|axis| Array(c[axis]) - Array(a[axis]));
         let [x, y, z] = [ab[1] * ac[2], ab[2] * ac[0], ab[0] * ac[1]];

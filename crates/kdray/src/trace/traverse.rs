@@ -1,7 +1,7 @@
 //! Visit the leaves along rays from front to back, with a stack \[PH04].
 
 #[cfg(target_arch = "x86_64")]
-use super::simd::Avx2;
+use super::simd::{Avx2, Avx512};
 use super::simd::{Best, Plain, Simd};
 use super::walk::visit_below;
 use super::wide::{Child, Layout};
@@ -65,6 +65,11 @@ pub(super) const ENOUGH: f32 = f32::NEG_INFINITY;
 #[inline]
 pub(super) fn traverse<V: Visitor>(trip: &Trip, ray: &Ray, visitor: &mut V) {
     #[cfg(target_arch = "x86_64")]
+    if let Some(proof) = trip.simd.avx512() {
+        // SAFETY: the processor has AVX-512.
+        return unsafe { traverse_avx512(proof.into(), trip, ray, visitor) };
+    }
+    #[cfg(target_arch = "x86_64")]
     if let Some(proof) = trip.simd.avx2() {
         // SAFETY: the processor has AVX2.
         return unsafe { traverse_avx2(proof.into(), trip, ray, visitor) };
@@ -84,6 +89,12 @@ fn traverse_plain(trip: &Trip, ray: &Ray, visitor: &mut impl Visitor) {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
 fn traverse_avx2<V: Visitor>(simd: Avx2<V>, trip: &Trip, ray: &Ray, visitor: &mut V) {
+    traverse_with(simd, trip, ray, visitor);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,lzcnt,popcnt")]
+fn traverse_avx512<V: Visitor>(simd: Avx512<V>, trip: &Trip, ray: &Ray, visitor: &mut V) {
     traverse_with(simd, trip, ray, visitor);
 }
 

@@ -20,19 +20,19 @@ fn visit<S: Simd>(
     (child, until, stack): (Child, &mut f32, &mut Stack),
     visitor: &mut impl Visitor,
 ) -> Option<Child> {
-    let interval = [ray.t_min, *until];
     if let Some(first) = child.block() {
         visitor.leaf();
         // Made when the first leaf is reached: many rays reach none.
         let shear = shear.get_or_insert_with(|| simd.shear(ray));
         // SAFETY: children of a layout are in it.
         let blocks = unsafe { layout.blocks.get_unchecked(first..) };
-        *until = test_leaf(simd, (blocks, child.is_one()), shear, interval, visitor);
+        *until = test_leaf(simd, (blocks, child.is_one()), (ray, shear), *until, visitor);
         if *until == ENOUGH { None } else { stack.pop(*until) }
     } else {
         visitor.step();
         // SAFETY: as above.
         let wide = unsafe { layout.wides.get_unchecked(child.0 as usize) };
+        let interval = [ray.t_min, *until];
         simd.nearest(wide, slabs, interval, stack).or_else(|| stack.pop(*until))
     }
 }
@@ -114,8 +114,8 @@ impl<'a, S: Simd> Walk<'a, S> {
         let first = child.block().unwrap_or(0);
         // SAFETY: as above.
         let blocks = unsafe { layout.blocks.get_unchecked(first..) };
-        let (leaf, interval) = ((blocks, child.is_one()), [self.ray.t_min, self.until]);
-        self.until = test_leaf(self.simd, leaf, shear, interval, visitor);
+        let (leaf, ray) = ((blocks, child.is_one()), (self.ray, &*shear));
+        self.until = test_leaf(self.simd, leaf, ray, self.until, visitor);
         self.next(layout)
     }
 
@@ -133,13 +133,13 @@ impl<'a, S: Simd> Walk<'a, S> {
 fn test_leaf<S: Simd, V: Visitor>(
     simd: S,
     (blocks, is_one): (&[Block], bool),
-    shear: &S::Shear,
-    [t_min, mut until]: [f32; 2],
+    (ray, shear): (&Ray, &S::Shear),
+    mut until: f32,
     visitor: &mut V,
 ) -> f32 {
     for block in blocks {
         visitor.test();
-        let mut filtered = simd.filter(block, shear, [t_min, until]);
+        let mut filtered = simd.filter(block, shear, [ray.t_min, until], V::ASKS_WHETHER);
         if V::ASKS_WHETHER {
             for lane in filtered.inside() {
                 until = lesser(until, visitor.inside(block.index(lane)));
@@ -148,13 +148,11 @@ fn test_leaf<S: Simd, V: Visitor>(
                 }
             }
         }
-        while let Some(lane) = filtered.next(until) {
+        while let Some(lane) = simd.next(&mut filtered, until) {
             if visitor.knows(block.index(lane)) {
                 continue;
             }
-            let Some(hit) = block.hit(lane, filtered.surely(lane), shear.as_ref()) else {
-                continue;
-            };
+            let Some(hit) = simd.hit(block, lane, &filtered, (ray, shear)) else { continue };
             until = lesser(until, visitor.hit(hit));
             if until == ENOUGH {
                 return ENOUGH;

@@ -7,13 +7,18 @@
 
 use std::arch::x86_64::*;
 
-use super::block::{Block, LANES, RayLanes};
+use super::block::Block;
+use super::eights::Eights;
+use super::filter::{RayLanes, unknown_hit};
+use super::located::Located;
 use super::prepare::Slabs;
+use super::sift::Sifted;
 use super::simd::HasAvx2;
 use super::step::places;
 use super::traverse::{Trip, Visitor};
+use super::vector::lanes;
 use super::wide::{Child, Wide};
-use crate::geometry::Ray;
+use crate::geometry::{Hit, Ray};
 
 /// Rays that are on their way together: what is known of them stays in the nearest cache.
 const RAYS: usize = 128;
@@ -199,12 +204,13 @@ impl Wave<'_> {
             let interval = [rays[at as usize].t_min, rays[at as usize].t_max];
             for place in child.block().unwrap_or(0).. {
                 if count == BLOCKS {
-                    show(blocks, &found, shears, visitors);
+                    show(blocks, &found, (rays, shears), visitors);
                     count = 0;
                 }
                 let shear =
                     shears[at as usize].get_or_insert_with(|| RayLanes::new(&rays[at as usize]));
-                let (maybe, surely, inside) = blocks[place].crossed_avx2::<V>(shear, interval);
+                let Sifted { maybe, surely, inside } =
+                    blocks[place].crossed_avx2::<V>(shear, interval);
                 found[count] = Candidates { ray: at, block: place as u32, maybe, surely, inside };
                 count += usize::from(maybe != 0);
                 if child.is_one() || blocks[place].is_last() {
@@ -212,36 +218,42 @@ impl Wave<'_> {
                 }
             }
         }
-        show(blocks, &found[..count], shears, visitors);
+        show(blocks, &found[..count], (rays, shears), visitors);
         self.leaves.len = 0;
     }
 }
 
 /// Shows hits of candidates.
-#[inline(always)]
+#[inline]
+#[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
 fn show<V: Visitor>(
     blocks: &[Block],
     found: &[Candidates],
-    shears: &[Option<RayLanes>],
+    (rays, shears): (&[Ray], &[Option<RayLanes>]),
     visitors: &mut [Option<V>],
 ) {
     for candidates in found {
         let block = &blocks[candidates.block as usize];
         let at = candidates.ray as usize;
         let (Some(shear), Some(visitor)) = (&shears[at], &mut visitors[at]) else { continue };
-        let mut rest = candidates.maybe;
-        while rest != 0 {
-            let lane = rest.trailing_zeros() as usize & (LANES - 1);
-            rest &= rest - 1;
-            let index = block.index(lane);
-            if visitor.knows(index) {
-                continue;
-            }
-            if V::ASKS_WHETHER && candidates.inside >> lane & 1 == 1 {
-                visitor.inside(index);
-            } else if let Some(hit) =
-                block.hit(lane, candidates.surely >> lane & 1 == 1, shear.as_ref())
-            {
+        let inside = if V::ASKS_WHETHER { candidates.inside } else { 0 };
+        for lane in lanes(inside) {
+            visitor.inside(block.index(lane));
+        }
+        let news = |lane: &usize| !visitor.knows(block.index(*lane));
+        let rest =
+            lanes(candidates.maybe & !inside).filter(news).fold(0, |all, lane| all | 1 << lane);
+        if rest == 0 {
+            continue;
+        }
+        let Located { known, t, u, v } = block.located_avx2(shear);
+        let [t, u, v] = [t.numbers(), u.numbers(), v.numbers()];
+        for lane in lanes(rest) {
+            let triangle = block.index(lane);
+            let surely = candidates.surely >> lane & 1 == 1;
+            if known >> lane & 1 == 1 && surely {
+                visitor.hit(Hit { t: t[lane], triangle, u: u[lane], v: v[lane] });
+            } else if let Some(hit) = unknown_hit(block, lane, surely, &rays[at]) {
                 visitor.hit(hit);
             }
         }

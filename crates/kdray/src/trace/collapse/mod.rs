@@ -68,7 +68,8 @@ impl Collapse<'_> {
     fn child(&mut self, node: usize) -> Child {
         let is_leaf = self.plan.shapes.children(node).is_none();
         if is_leaf && self.plan.is_chain(node) {
-            Child::leaf(self.plan.shapes.blocks(node).start)
+            let blocks = self.plan.shapes.blocks(node);
+            if blocks.len() == 1 { Child::one(blocks.start) } else { Child::leaf(blocks.start) }
         } else {
             self.wide(node)
         }

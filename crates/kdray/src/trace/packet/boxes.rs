@@ -6,7 +6,7 @@ use super::Rays;
 use crate::trace::prepare::{SMALLEST, THICKNESS};
 use crate::trace::simd::HasAvx2;
 use crate::trace::stack::Stack;
-use crate::trace::step::{ROWS, far_to_near_avx2};
+use crate::trace::step::{ROW, ROWS, far_to_near_avx2};
 use crate::trace::vector::{Arithmetic, Eight, MOST, Mask, Numbers, Vector, by_axis};
 use crate::trace::wide::{Child, Wide};
 
@@ -69,7 +69,7 @@ impl<L: Vector> Boxes<L> {
     #[inline(always)]
     pub(super) fn meet(&self, wide: &Wide, child: usize, until: L) -> u32 {
         let bounds = wide.bounds.as_flattened();
-        let rows = &ROWS[self.octant];
+        let rows = ROWS[self.octant].map(|bytes| bytes / ROW);
         let (mut enter, mut leave) = (self.t_min, until);
         for axis in 0..3 {
             let mut near = until.all(bounds[rows[axis]][child]) * self.inverse[axis];

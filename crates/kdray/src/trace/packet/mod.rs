@@ -13,12 +13,12 @@ use super::prepare::{Shear, lesser};
 use super::simd::{Avx2, HasAvx2, HasAvx512};
 use super::stack::Stack;
 use super::traverse::{ENOUGH, Trip, Visitor};
-use super::vector::{Eight, MOST, Numbers, Sixteen, Vector};
+use super::vector::{Eight, Numbers, Sixteen, Vector, lanes};
 use super::walk::visit_below;
 use super::wide::Child;
 use crate::geometry::{Hit, Ray};
 use boxes::Boxes;
-use triangles::{Located, Triangles};
+use triangles::{Triangles, Where};
 
 /// Below so many rays each goes on alone.
 const FEW: u32 = 3;
@@ -200,14 +200,14 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
     fn show_hits(
         &mut self,
         (block, place): (&Block, usize),
-        located: &Located,
+        located: &Where,
         (maybe, surely): (u32, u32),
         visitors: &mut [Option<V>],
     ) {
         for lane in lanes(maybe) {
             let Some(visitor) = &mut visitors[lane] else { continue };
             let surely = surely >> lane & 1 == 1;
-            let hit = if surely && located.mask >> lane & 1 == 1 {
+            let hit = if surely && located.known >> lane & 1 == 1 {
                 let [t, u, v] = [&located.t, &located.u, &located.v].map(|it| it.0[lane]);
                 Some(Hit { t, triangle: block.index(place), u, v })
             } else {
@@ -218,16 +218,6 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
             }
         }
     }
-}
-
-/// The lanes of a mask.
-#[inline(always)]
-fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = mask.trailing_zeros() as usize;
-        mask &= mask.wrapping_sub(1);
-        (lane < MOST).then_some(lane)
-    })
 }
 
 #[cfg(test)]

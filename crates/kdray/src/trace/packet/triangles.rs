@@ -2,8 +2,9 @@
 
 use super::Rays;
 use crate::trace::block::Block;
+use crate::trace::located::{Located, located, precisely_sheared};
 use crate::trace::sift::{Sifted, sheared, sift};
-use crate::trace::vector::{Arithmetic, Mask, Numbers, Precise, Vector, by_axis};
+use crate::trace::vector::{Arithmetic, Numbers, Precise, Vector, by_axis};
 
 /// Rays ready for triangles, as [`Shear`](crate::trace::prepare::Shear) is for one.
 pub(super) struct Triangles<L: Vector> {
@@ -15,9 +16,9 @@ pub(super) struct Triangles<L: Vector> {
     t_min: L,
 }
 
-/// Where the rays cross a triangle, for those in `mask`.
-pub(super) struct Located {
-    pub(super) mask: u32,
+/// Where the rays cross a triangle, for those of which it is known.
+pub(super) struct Where {
+    pub(super) known: u32,
     pub(super) t: Numbers,
     pub(super) u: Numbers,
     pub(super) v: Numbers,
@@ -44,48 +45,31 @@ impl<L: Vector> Triangles<L> {
 
     /// The rays that may hit the triangle at a place of a block.
     #[inline(always)]
-    pub(super) fn sift(&self, block: &Block, place: usize, until: L) -> Sifted<L> {
+    pub(super) fn sift(&self, block: &Block, place: usize, until: L) -> Sifted {
         let corners = by_axis!(|corner| {
             let corner = &block.corners()[corner];
             let point = by_axis!(|axis| until.all(corner[self.axes[axis]][place]));
             sheared(point, &self.origin, &self.slope)
         });
-        sift(&corners, self.t_per_z.rounded(), [self.t_min, until])
+        let (sifted, _) = sift(&corners, self.t_per_z.rounded(), [self.t_min, until]);
+        sifted
     }
 
-    /// [`locate`](crate::trace::intersect::locate) for all rays at once, with the same arithmetic,
-    /// but for rays that pass an edge on the outside by a rounding.
+    /// Where all rays cross the triangle.
     #[inline(always)]
-    pub(super) fn locate(&self, block: &Block, place: usize) -> Located {
-        let [a, b, c] = by_axis!(|corner| self.precisely_sheared(&block.corners()[corner], place));
-        let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-        let (lowest, highest) = (u.min(v).min(w), u.max(v).max(w));
-        let (sum, zero) = (u + v + w, u.all(0.0));
-        // Of these none is inside whose sum is zero.
-        let positive = zero.is_at_most(lowest).and(zero.is_less(sum));
-        let negative = highest.is_at_most(zero).and(sum.is_less(zero));
-        let (v, w) = (v / sum, w / sum);
-        let z = a[2] + (v * (b[2] - a[2]) + w * (c[2] - a[2]));
-        Located {
-            mask: positive.or(negative).bits(),
-            t: (z * self.t_per_z).rounded().numbers(),
-            u: v.rounded().numbers(),
-            v: w.rounded().numbers(),
-        }
+    pub(super) fn locate(&self, block: &Block, place: usize) -> Where {
+        let corners = by_axis!(|corner| self.precisely_sheared(&block.corners()[corner], place));
+        let Located { known, t, u, v } = located::<L>(corners, self.t_per_z);
+        Where { known, t: t.numbers(), u: u.numbers(), v: v.numbers() }
     }
+
     /// A corner in ray space.
     #[inline(always)]
     fn precisely_sheared(&self, corner: &[[f32; 8]; 3], place: usize) -> [L::Precise; 3] {
-        let slope = self.precise_slope;
-        let [x, y, z] = by_axis!(|axis| {
-            let corner = slope[0].all(f64::from(corner[self.axes[axis]][place]));
+        let corner = by_axis!(|axis| {
+            let corner = self.t_per_z.all(f64::from(corner[self.axes[axis]][place]));
             corner - self.origin[axis].precise()
         });
-        [x - slope[0] * z, y - slope[1] * z, z]
+        precisely_sheared(corner, &self.precise_slope)
     }
-}
-
-#[inline(always)]
-fn edge<P: Precise>(p: [P; 3], q: [P; 3]) -> P {
-    p[0] * q[1] - p[1] * q[0]
 }

@@ -2,21 +2,23 @@
 //! the processor has for it.
 
 #[cfg(target_arch = "x86_64")]
-use std::marker::PhantomData;
+mod avx;
 
 use super::block::{Block, Filtered};
 use super::prepare::{Shear, Slabs};
 use super::stack::Stack;
 use super::step;
 use super::wide::{Child, Wide};
-use crate::geometry::Ray;
+use crate::geometry::{Hit, Ray};
+#[cfg(target_arch = "x86_64")]
+pub(super) use avx::{Avx2, Avx512};
 
 /// How a ray is made ready, steps down and meets triangles. All ways lead to the same hits.
 pub(super) trait Simd: Copy {
     /// A ray ready for boxes.
     type Slabs;
     /// A ray ready for triangles.
-    type Shear: AsRef<Shear>;
+    type Shear;
 
     fn slabs(self, ray: &Ray, reach: f32) -> Self::Slabs;
 
@@ -34,8 +36,30 @@ pub(super) trait Simd: Copy {
     /// Puts the children that are met in the interval on the stack, the nearest on top.
     fn push(self, wide: &Wide, slabs: &Self::Slabs, interval: [f32; 2], stack: &mut Stack);
 
-    /// The triangles of a block that may be hit in the interval.
-    fn filter(self, block: &Block, shear: &Self::Shear, interval: [f32; 2]) -> Filtered;
+    /// The triangles of a block that may be hit in the interval; `whether` it is enough to know that they
+    /// are, and not where.
+    fn filter(
+        self,
+        block: &Block,
+        shear: &Self::Shear,
+        interval: [f32; 2],
+        whether: bool,
+    ) -> Filtered;
+
+    /// Takes out the lane that may be hit first, if that is not after `until`.
+    #[inline(always)]
+    fn next(self, filtered: &mut Filtered, until: f32) -> Option<usize> {
+        filtered.next(until)
+    }
+
+    /// The hit in a lane that was taken out, if there is one.
+    fn hit(
+        self,
+        block: &Block,
+        lane: usize,
+        filtered: &Filtered,
+        ray: (&Ray, &Self::Shear),
+    ) -> Option<Hit>;
 }
 
 /// For every processor.
@@ -73,18 +97,20 @@ impl Simd for Plain {
     }
 
     #[inline(always)]
-    fn filter(self, block: &Block, _: &Shear, _: [f32; 2]) -> Filtered {
+    fn filter(self, block: &Block, _: &Shear, _: [f32; 2], _: bool) -> Filtered {
         block.unknown()
     }
-}
 
-/// For processors with AVX2. `V` is what a traversal is for: each has functions of its own, so that
-/// the compiler makes them part of its loop.
-#[cfg(target_arch = "x86_64")]
-pub(super) struct Avx2<V> {
-    /// That the processor has it.
-    _proof: HasAvx2,
-    purpose: PhantomData<V>,
+    #[inline(always)]
+    fn hit(
+        self,
+        block: &Block,
+        lane: usize,
+        _: &Filtered,
+        (_, shear): (&Ray, &Shear),
+    ) -> Option<Hit> {
+        block.hit(lane, false, shear)
+    }
 }
 
 /// The best that this processor can do.
@@ -135,6 +161,7 @@ impl Best {
             let proof = HasAvx2(());
             return if std::arch::is_x86_feature_detected!("avx512f")
                 && std::arch::is_x86_feature_detected!("avx512dq")
+                && std::arch::is_x86_feature_detected!("avx512vl")
             {
                 Self::Avx512(HasAvx512(proof))
             } else {
@@ -183,73 +210,6 @@ impl Best {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-impl<V> From<HasAvx2> for Avx2<V> {
-    #[inline(always)]
-    fn from(proof: HasAvx2) -> Self {
-        Self { _proof: proof, purpose: PhantomData }
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-impl<V> Clone for Avx2<V> {
-    #[inline(always)]
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-impl<V> Copy for Avx2<V> {}
-
-#[cfg(target_arch = "x86_64")]
-impl<V> Simd for Avx2<V> {
-    type Slabs = step::Lanes;
-    type Shear = super::block::RayLanes;
-
-    #[inline(always)]
-    fn slabs(self, ray: &Ray, reach: f32) -> Self::Slabs {
-        // SAFETY: this exists only where the processor has AVX2. The same below.
-        unsafe { step::Lanes::new(ray, reach) }
-    }
-
-    #[inline(always)]
-    fn shear(self, ray: &Ray) -> Self::Shear {
-        // SAFETY: as above.
-        unsafe { super::block::RayLanes::new(ray) }
-    }
-
-    #[inline(always)]
-    fn nearest(
-        self,
-        wide: &Wide,
-        slabs: &Self::Slabs,
-        interval: [f32; 2],
-        stack: &mut Stack,
-    ) -> Option<Child> {
-        // SAFETY: as above.
-        unsafe {
-            let met = step::meet_avx2::<V>(wide, slabs, interval);
-            step::nearest_avx2::<V>(wide, slabs.octant, &met, stack)
-        }
-    }
-
-    #[inline(always)]
-    fn push(self, wide: &Wide, slabs: &Self::Slabs, interval: [f32; 2], stack: &mut Stack) {
-        // SAFETY: as above.
-        unsafe {
-            let met = step::meet_avx2::<V>(wide, slabs, interval);
-            step::push_avx2::<V>(wide, slabs.octant, &met, stack);
-        }
-    }
-
-    #[inline(always)]
-    fn filter(self, block: &Block, shear: &Self::Shear, interval: [f32; 2]) -> Filtered {
-        // SAFETY: as above.
-        unsafe { block.filter_avx2::<V>(shear, interval) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -257,7 +217,7 @@ mod tests {
 
     /// Filters blocks: what is said of a lane is true of its hit. Gives how many lanes may be hit,
     /// and a hash of everything that was said.
-    fn filters_what_is_hit(simd: impl Simd) -> (u32, u32) {
+    fn filters_what_is_hit(simd: impl Simd, whether: bool) -> (u32, u32) {
         let mut state = 5;
         let (mut maybes, mut hash) = (0, 0_u32);
         for round in 0..20_000 {
@@ -267,50 +227,80 @@ mod tests {
             let mut point = |size: f32| [(); 3].map(|()| size * (noise(&mut state) - 0.5));
             let origin = point(far * size);
             let corners = [(); 8].map(|()| [point(size), point(size), point(0.1 * size)]);
-            let block = Block::new(&[0, 1, 2, 3, 4, 5, 6, 7], true, |at| corners[at as usize]);
+            let used = 8 - round % 3;
+            let block =
+                Block::new(&[0, 1, 2, 3, 4, 5, 6, 7][..used], true, |at| corners[at as usize]);
             let direction = if round % 7 == 0 { [0.0, 1.0, 0.0] } else { point(1.0) };
             let (t_min, t_max) = (size * noise(&mut state), 2.0 * size * noise(&mut state));
+            let t_max = if round % 2 == 0 { t_max } else { f32::INFINITY };
             let ray = Ray { origin, direction, t_min, t_max };
             let shear = simd.shear(&ray);
-            let said = simd.filter(&block, &shear, [t_min, t_max]);
+            let mut said = simd.filter(&block, &shear, [t_min, t_max], whether);
             for lane in 0..8 {
                 let [maybe, surely, inside] =
                     [said.maybe, said.surely, said.inside].map(|bits| bits >> lane & 1 == 1);
-                let hit = block.hit(lane, false, shear.as_ref());
+                let hit = block.hit(lane, false, &Shear::new(&ray)).filter(|_| lane < used);
                 let is_inside = hit.is_some_and(|hit| t_min <= hit.t && hit.t <= t_max);
                 let case = format!("lane {lane}: {hit:?} of {ray:?} and {:?}", corners[lane]);
                 assert!(maybe || !is_inside, "{case}");
                 assert!(hit.is_some() || !(maybe && surely), "{case}");
                 assert!(is_inside || !(maybe && inside), "{case}");
-                assert!(
-                    !is_inside || said.earliest[lane] <= hit.map_or(0.0, |hit| hit.t),
-                    "{case}"
-                );
-                // Where no lane may be hit, nothing is said of when.
-                let early = if maybe { said.earliest[lane].to_bits() } else { 0 };
-                hash = hash.wrapping_mul(0x0100_0193) ^ early;
+                if maybe {
+                    let found = simd.hit(&block, lane, &said, (&ray, &shear));
+                    let found = found.filter(|_| lane < used);
+                    assert_eq!(found, hit, "{case}");
+                    let bits = found.map_or(0, |hit| hit.t.to_bits() ^ hit.u.to_bits());
+                    hash = hash.wrapping_mul(0x0100_0193) ^ bits;
+                }
             }
             maybes += said.maybe.count_ones();
             for bits in [said.maybe, said.surely, said.inside] {
                 hash = hash.wrapping_mul(0x0100_0193) ^ (bits & said.maybe);
             }
+            takes_out_the_first(simd, &mut said, t_max);
         }
         (maybes, hash)
     }
 
+    /// Lanes of which it is known where they are hit come in order, and all up to `until`.
+    fn takes_out_the_first(simd: impl Simd, said: &mut Filtered, until: f32) {
+        let known: Vec<usize> = (0..8)
+            .filter(|lane| said.maybe & said.located & 1 << lane != 0)
+            .filter(|lane| said.earliest[*lane] <= until)
+            .collect();
+        let mut taken = Vec::new();
+        while let Some(lane) = simd.next(said, until) {
+            taken.extend((said.located >> lane & 1 == 1).then_some(lane));
+        }
+        assert!(taken.is_sorted_by_key(|lane| said.earliest[*lane]), "{taken:?}");
+        taken.sort_unstable();
+        assert_eq!(taken, known);
+    }
+
     #[test]
     fn filters_say_what_is_so_and_the_same_on_every_processor() {
-        filters_what_is_hit(Plain);
-        let said = match Best::detect() {
+        for whether in [false, true] {
+            filters_what_is_hit(Plain, whether);
             #[cfg(target_arch = "x86_64")]
-            Best::Avx2(proof) => filters_what_is_hit(Avx2::<()>::from(proof)),
-            #[cfg(target_arch = "x86_64")]
-            Best::Avx512(proof) => filters_what_is_hit(Avx2::<()>::from(proof.avx2())),
+            for said in [
+                Best::detect().avx2().map(|it| filters_what_is_hit(Avx2::<()>::from(it), whether)),
+                Best::detect()
+                    .avx512()
+                    .map(|it| filters_what_is_hit(Avx512::<()>::from(it), whether)),
+            ] {
+                match said {
+                    Some(said) => assert_eq!(said, SAID),
+                    None => println!("this processor has not all of AVX2 and AVX-512"),
+                }
+            }
             #[cfg(target_arch = "aarch64")]
-            Best::Neon(neon) => filters_what_is_hit(neon),
-            Best::Plain => return println!("this processor has no fast path: none was tested"),
-        };
-        // What AVX2 says.
-        assert_eq!(said, (29_663, 2_208_235_696));
+            if let Best::Neon(neon) = Best::detect() {
+                filters_what_is_hit(neon, whether);
+            }
+        }
     }
+
+    /// What the first processor said.
+    #[cfg(target_arch = "x86_64")]
+    const SAID: (u32, u32) = (26_159, 2_902_190_403);
 }

@@ -1,0 +1,189 @@
+//! Which triangles of a block a ray hits, and where, eight at a time.
+
+use std::arch::x86_64::*;
+
+use super::block::{Block, Filtered, LANES};
+use super::eights;
+use super::located::{Located, located, precisely_sheared};
+use super::prepare::Shear;
+use super::sift::{Crossed, Sifted, crossed, crossed_between, sheared, sift};
+use super::traverse::Visitor;
+use super::vector::{Arithmetic, Eight, Mask, Vector, by_axis};
+use crate::geometry::{Hit, Ray};
+
+/// A ray in every lane.
+pub(super) struct RayLanes {
+    axes: [usize; 3],
+    origin: [Eight; 3],
+    slope: [Eight; 2],
+    precise_slope: [f64; 2],
+    t_per_z: f64,
+}
+
+impl RayLanes {
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(super) fn new(ray: &Ray) -> Self {
+        let axes = Shear::axes(&ray.direction);
+        let order = _mm_setr_epi32(axes[0] as i32, axes[1] as i32, axes[2] as i32, 3);
+        let in_order = |start: *const f32| {
+            let mut components = [0.0; 4];
+            // SAFETY: `start` is followed by four numbers, as many as there is room for.
+            unsafe {
+                let permuted = _mm_permutevar_ps(_mm_loadu_ps(start), order);
+                _mm_storeu_ps(components.as_mut_ptr(), permuted);
+            }
+            [components[0], components[1], components[2]]
+        };
+        let start = std::ptr::from_ref(ray).cast::<f32>();
+        let Shear { origin, shear, precise_shear, t_per_z, .. } =
+            Shear::in_order(axes, in_order(start), in_order(start.wrapping_add(4)));
+        let all = |value: f32| Eight(_mm256_set1_ps(value));
+        let (origin, slope) = (origin.map(all), shear.map(all));
+        Self { axes, origin, slope, precise_slope: precise_shear, t_per_z }
+    }
+}
+
+impl Block {
+    /// The corners, their axes in the order of the ray's.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    fn in_order(&self, ray: &RayLanes) -> [[Eight; 3]; 3] {
+        let mut corners = [ray.origin; 3];
+        for (corner, rows) in corners.iter_mut().zip(self.corners()) {
+            for (place, axis) in ray.axes.into_iter().enumerate() {
+                // SAFETY: axes are less than three; rows are eight lanes, aligned like the block.
+                corner[place] = Eight(unsafe { _mm256_load_ps(rows.get_unchecked(axis).as_ptr()) });
+            }
+        }
+        corners
+    }
+
+    /// The corners in ray space.
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    fn sheared_avx2(&self, ray: &RayLanes) -> [[Eight; 3]; 3] {
+        let corners = self.in_order(ray);
+        by_axis!(|corner| sheared(corners[corner], &ray.origin, &ray.slope))
+    }
+
+    /// Where the line of the ray crosses the triangles.
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    pub(super) fn located_avx2(&self, ray: &RayLanes) -> Located<Eight> {
+        let corners = self.in_order(ray);
+        let origin = by_axis!(|axis| ray.origin[axis].precise());
+        let [x, y] = ray.precise_slope;
+        let (slope, t_per_z) = ([origin[0].all(x), origin[0].all(y)], origin[0].all(ray.t_per_z));
+        let corners = by_axis!(|corner| {
+            let way = by_axis!(|axis| corners[corner][axis].precise() - origin[axis]);
+            precisely_sheared(way, &slope)
+        });
+        located(corners, t_per_z)
+    }
+
+    /// The lanes that are hit in the interval, and where; and those of which that is not known in vectors.
+    /// Where it is enough to know whether, that may be all that is said.
+    ///
+    /// A line that crosses a triangle often does so behind the ray, most of all where the ray starts on a
+    /// surface. Where it might, bounds of `t` are asked first: a third of the instructions.
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    #[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
+    pub(super) fn filter_avx2<V>(
+        &self,
+        ray: &RayLanes,
+        [t_min, t_max]: [f32; 2],
+        whether: bool,
+    ) -> Filtered {
+        let corners = self.sheared_avx2(ray);
+        let all = |number: f32| ray.origin[0].all(number);
+        let (first, last, t_per_z) = (all(t_min), all(t_max), all(ray.t_per_z as f32));
+        let crossed = crossed(&corners);
+        let (mut maybe, surely) = (crossed.maybe.bits(), crossed.surely.bits());
+        if maybe == 0 {
+            return Filtered::NONE;
+        }
+        let [a, b, c] = by_axis!(|corner| corners[corner][2] * t_per_z);
+        let is_ahead = a.min(b).min(c).is_less(first).bits() & maybe == 0;
+        if whether || !is_ahead || t_max < f32::INFINITY {
+            let (sifted, _) = crossed_between(&corners, &crossed, t_per_z, [first, last]);
+            maybe = sifted.maybe;
+            if maybe == 0 || whether && sifted.inside != 0 {
+                return Filtered { maybe, surely, inside: sifted.inside, ..Filtered::NONE };
+            }
+        }
+        let Located { known, t, u, v } = self.located_avx2(ray);
+        let known = known & surely;
+        let inside = first.is_at_most(t).and(t.is_at_most(last)).bits();
+        Filtered {
+            maybe: maybe & (inside | !known),
+            surely,
+            inside: inside & maybe & known,
+            located: known,
+            earliest: eights::Eights::numbers(t),
+            weights: [eights::Eights::numbers(u), eights::Eights::numbers(v)],
+        }
+    }
+
+    /// Of the lanes whose edge functions do not differ in sign: all, those whose are not zero, and, if
+    /// that is asked for, those that are hit in the interval for certain.
+    #[inline]
+    #[target_feature(enable = "avx2,fma")]
+    pub(super) fn crossed_avx2<V: Visitor>(
+        &self,
+        ray: &RayLanes,
+        [t_min, t_max]: [f32; 2],
+    ) -> Sifted {
+        let corners = self.sheared_avx2(ray);
+        if V::ASKS_WHETHER {
+            let all = |number: f32| ray.origin[0].all(number);
+            let (sifted, _) = sift(&corners, all(ray.t_per_z as f32), [all(t_min), all(t_max)]);
+            sifted
+        } else {
+            let Crossed { maybe, surely, .. } = crossed(&corners);
+            Sifted { maybe: maybe.bits(), surely: surely.bits(), inside: 0 }
+        }
+    }
+}
+
+impl Filtered {
+    /// [`Filtered::next`], all lanes at once. Those of which nothing is known come first.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    #[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
+    pub(super) fn next_avx2<V>(&mut self, until: f32) -> Option<usize> {
+        // SAFETY: eight lanes.
+        let earliest = Eight(unsafe { _mm256_loadu_ps(self.earliest.as_ptr()) });
+        let early = earliest.is_at_most(earliest.all(until)).bits();
+        let maybe = self.maybe & (early | !self.located);
+        let unknown = maybe & !self.located;
+        let is_alone = maybe & maybe.wrapping_sub(1) == 0;
+        let first = match (maybe, unknown) {
+            (0, _) => return None,
+            (one, _) if is_alone => one.trailing_zeros() as usize,
+            (_, 0) => eights::Eights::least_of(earliest, maybe).0,
+            (_, some) => some.trailing_zeros() as usize,
+        };
+        let first = first & (LANES - 1);
+        self.maybe = maybe & !(1 << first);
+        Some(first)
+    }
+
+    /// The hit in a lane of the block, if there is one.
+    #[inline(always)]
+    pub(super) fn hit(&self, block: &Block, lane: usize, ray: &Ray) -> Option<Hit> {
+        if self.located >> lane & 1 == 0 {
+            return unknown_hit(block, lane, self.surely(lane), ray);
+        }
+        let [u, v] = [self.weights[0][lane], self.weights[1][lane]];
+        Some(Hit { t: self.earliest[lane], triangle: block.index(lane), u, v })
+    }
+}
+
+/// The hit in a lane of which nothing is known in vectors.
+#[cold]
+#[inline(never)]
+pub(super) fn unknown_hit(block: &Block, lane: usize, surely: bool, ray: &Ray) -> Option<Hit> {
+    block.hit(lane, surely, &Shear::new(ray))
+}
