@@ -24,20 +24,7 @@ impl RayLanes {
     #[inline]
     #[target_feature(enable = "avx2")]
     pub(super) fn new(ray: &Ray) -> Self {
-        let axes = Shear::axes(&ray.direction);
-        let order = _mm_setr_epi32(axes[0] as i32, axes[1] as i32, axes[2] as i32, 3);
-        let in_order = |start: *const f32| {
-            let mut components = [0.0; 4];
-            // SAFETY: `start` is followed by four numbers, as many as there is room for.
-            unsafe {
-                let permuted = _mm_permutevar_ps(_mm_loadu_ps(start), order);
-                _mm_storeu_ps(components.as_mut_ptr(), permuted);
-            }
-            [components[0], components[1], components[2]]
-        };
-        let start = std::ptr::from_ref(ray).cast::<f32>();
-        let Shear { origin, shear, precise_shear, t_per_z, .. } =
-            Shear::in_order(axes, in_order(start), in_order(start.wrapping_add(4)));
+        let Shear { axes, origin, shear, precise_shear, t_per_z } = Shear::new(ray);
         let all = |value: f32| Eight(_mm256_set1_ps(value));
         let (origin, slope) = (origin.map(all), shear.map(all));
         Self { axes, origin, slope, precise_slope: precise_shear, t_per_z }

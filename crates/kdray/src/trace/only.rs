@@ -16,6 +16,7 @@ impl<'a, F: Fn(u32) -> bool> Only<'a, F> {
     }
 
     /// As [`Tracer::closest_hit`].
+    #[inline]
     #[must_use]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         let mut closest = Closest::new(ray, &self.accept);
@@ -32,6 +33,7 @@ impl<'a, F: Fn(u32) -> bool> Only<'a, F> {
     }
 
     /// As [`Tracer::any_hit`].
+    #[inline]
     #[must_use]
     pub fn any_hit(&self, ray: &Ray) -> bool {
         let mut any = Any::new(ray, &self.accept);

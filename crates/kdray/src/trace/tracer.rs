@@ -94,6 +94,7 @@ impl Tracer {
     ///
     /// Exactly the hit that [`intersect`](super::intersect()) gives for that triangle. Watertight:
     /// no ray slips between triangles that share an edge. \[PH04], \[WBA13]
+    #[inline]
     #[must_use]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         self.all().closest_hit(ray)
@@ -106,6 +107,7 @@ impl Tracer {
     }
 
     /// Whether anything is hit.
+    #[inline]
     #[must_use]
     pub fn any_hit(&self, ray: &Ray) -> bool {
         self.all().any_hit(ray)

@@ -22,8 +22,11 @@ fn visit<S: Simd>(
 ) -> Option<Child> {
     if let Some(first) = child.block() {
         visitor.leaf();
-        // Made when the first leaf is reached: many rays reach none.
-        let shear = shear.get_or_insert_with(|| simd.shear(ray));
+        // Made when the first leaf is reached: many rays reach none. That takes about as long as reading it.
+        let shear = shear.get_or_insert_with(|| {
+            layout.prefetch(child);
+            simd.shear(ray)
+        });
         // SAFETY: children of a layout are in it.
         let blocks = unsafe { layout.blocks.get_unchecked(first..) };
         *until = test_leaf(simd, (blocks, child.is_one()), (ray, shear), *until, visitor);
