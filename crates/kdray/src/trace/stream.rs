@@ -250,6 +250,13 @@ fn stream_with<V: Visitor>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Mesh;
+    use crate::trace::hits::Closest;
+    use crate::trace::noise::noise;
+    use crate::trace::prepare::reach;
+    use crate::trace::simd::Best;
+    use crate::trace::wide::Layout;
+    use crate::{BuildOptions, Tree};
 
     #[test]
     fn directions_are_compared_whatever_their_lengths() {
@@ -261,5 +268,33 @@ mod tests {
         let opposite: Vec<_> =
             (0..100).map(|i| ray(0.0, if i % 2 == 0 { 1.0 } else { -1.0 })).collect();
         assert!(!go_the_same_way(&opposite));
+    }
+
+    #[test]
+    fn rays_that_take_turns_find_what_single_rays_find() {
+        let mut state = 11;
+        let positions: Vec<_> = (0..900).map(|_| [(); 3].map(|()| noise(&mut state))).collect();
+        let triangles: Vec<_> = (0..890).map(|at| [at, at + 1, at + 7]).collect();
+        let mesh = Mesh::new(&positions, &triangles).expect("sound");
+        let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
+        let mut point = || [(); 3].map(|()| 2.0 * noise(&mut state) - 0.5);
+        let rays: Vec<_> =
+            (0..1000).map(|_| Ray::new(point(), point().map(|number| number - 0.5))).collect();
+        for simd in Best::each() {
+            let (layout, reach) = (Layout::new(&mesh, &tree), reach(&tree.bounds()));
+            let trip = Trip { layout, reach, simd };
+            assert!(is_worth_turns(&trip, &rays) && !go_together(&trip, &rays));
+            let single = |ray: &Ray| {
+                let mut closest = Closest::new(ray, |_| true);
+                traverse(&trip, ray, &mut closest);
+                closest.hit
+            };
+            let mut found = vec![None; rays.len()];
+            let begin = |_: usize, ray: &Ray| Some(Closest::new(ray, |_| true));
+            trace(&trip, &rays, begin, |index, closest| found[index] = closest.hit);
+            let expected: Vec<_> = rays.iter().map(single).collect();
+            assert!(expected.iter().flatten().count() > 100);
+            assert_eq!(found, expected, "{}", simd.name());
+        }
     }
 }

@@ -134,19 +134,25 @@ mod tests {
     }
 
     #[test]
-    fn the_plain_traversal_shows_what_the_fast_one_shows() {
+    fn every_traversal_shows_what_the_plain_one_shows() {
         let mesh = spiral();
         let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
-        let (layout, reach) = (Layout::new(&mesh, &tree), reach(&tree.bounds()));
-        let trip = Trip { layout, reach, simd: Best::detect() };
+        for simd in Best::each() {
+            println!("{}", simd.name());
+            let (layout, reach) = (Layout::new(&mesh, &tree), reach(&tree.bounds()));
+            shows_what_the_plain_one_shows(&Trip { layout, reach, simd });
+        }
+    }
+
+    fn shows_what_the_plain_one_shows(trip: &Trip) {
         let mut shown = 0;
         for index in 0..2000_u32 {
             let (sin, cos) = (1.3 * index as f32).sin_cos();
             let origin = [3.0 * cos, 0.003 * index as f32, 3.0 * sin];
             let ray = Ray::new(origin, [-cos, 0.3 * sin, -sin + 0.2 * cos]);
             let (mut fast, mut plain) = (Everything(Vec::new()), Everything(Vec::new()));
-            traverse(&trip, &ray, &mut fast);
-            traverse_plain(&trip, &ray, &mut plain);
+            traverse(trip, &ray, &mut fast);
+            traverse_plain(trip, &ray, &mut plain);
             // The fast one takes a block's hits in another order, and leaves out what is behind.
             for shown in [&mut fast.0, &mut plain.0] {
                 shown.retain(|(_, t)| f32::from_bits(*t) >= ray.t_min);

@@ -196,6 +196,17 @@ impl Best {
         }
     }
 
+    /// All ways of this processor, the best first.
+    #[cfg(test)]
+    pub(super) fn each() -> Vec<Self> {
+        match Self::detect() {
+            Self::Plain => vec![Self::Plain],
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(proof) => vec![Self::Avx512(proof), Self::Avx2(proof.avx2()), Self::Plain],
+            other => vec![other, Self::Plain],
+        }
+    }
+
     /// Its name, for people.
     pub(super) fn name(self) -> &'static str {
         match self {
