@@ -260,7 +260,7 @@ fn show<V: Visitor>(
     }
 }
 
-/// The children that the ray meets, a bit each: [`meet_avx2`](super::step::meet_avx2) of a ray as single
+/// The children that the ray meets, a bit each: [`meet`](super::step::meet) of a ray as single
 /// numbers, since those of all rays of a wave stay in the nearest cache.
 #[inline]
 #[target_feature(enable = "avx2,fma")]
