@@ -23,7 +23,7 @@ use crate::geometry::Ray;
 
 /// Rays on their way at the same time: enough to hide a read from memory, few enough for their
 /// state to stay in the nearest cache.
-const WALKS: usize = 8;
+const WALKS: usize = 12;
 
 /// Walks all `rays`. A ray's visitor comes from `begin`; `end` gets it, with the ray's index, when
 /// there is nothing more to visit. `begin` may pass over a ray.
