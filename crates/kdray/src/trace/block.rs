@@ -27,7 +27,7 @@ pub(super) struct Filtered {
     pub(super) surely: u32,
     /// Those that are hit in the interval for certain.
     pub(super) inside: u32,
-    /// No hit of a lane comes before.
+    /// No hit of a lane comes before. Where hits are located in vectors, that is said of located lanes only.
     pub(super) earliest: Lanes,
     /// Those of which it is known where they are hit: at their earliest `t` and these `u` and `v`.
     #[cfg_attr(

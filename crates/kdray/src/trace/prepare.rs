@@ -23,11 +23,12 @@ impl Shear {
     #[inline(always)]
     pub(super) fn new(ray: &Ray) -> Self {
         let axes = Self::axes(&ray.direction);
-        Self::in_order(
-            axes,
-            axes.map(|axis| ray.origin[axis]),
-            axes.map(|axis| ray.direction[axis]),
-        )
+        let [origin, direction] =
+            [ray.origin, ray.direction].map(|numbers| axes.map(|axis| numbers[axis]));
+        let t_per_z = 1.0 / f64::from(direction[2]);
+        let precise_shear = [f64::from(direction[0]) * t_per_z, f64::from(direction[1]) * t_per_z];
+        let shear = [precise_shear[0] as f32, precise_shear[1] as f32];
+        Self { axes, origin, shear, precise_shear, t_per_z }
     }
 
     /// The axes of ray space for a direction.
@@ -43,22 +44,6 @@ impl Shear {
         };
         // Two axes change places where the ray looks down, so that windings keep their sense.
         AXES[usize::from(direction[largest] < 0.0)][largest]
-    }
-
-    /// Of an origin and a direction whose components are in the order of `axes`.
-    #[inline(always)]
-    pub(super) fn in_order(axes: [usize; 3], origin: [f32; 3], direction: [f32; 3]) -> Self {
-        let t_per_z = 1.0 / f64::from(direction[2]);
-        let precise_shear = [f64::from(direction[0]) * t_per_z, f64::from(direction[1]) * t_per_z];
-        let shear = [precise_shear[0] as f32, precise_shear[1] as f32];
-        Self { axes, origin, shear, precise_shear, t_per_z }
-    }
-}
-
-impl AsRef<Self> for Shear {
-    #[inline(always)]
-    fn as_ref(&self) -> &Self {
-        self
     }
 }
 

@@ -22,7 +22,7 @@ fn visit<S: Simd>(
 ) -> Option<Child> {
     if let Some(first) = child.block() {
         visitor.leaf();
-        // Made when the first leaf is reached: many rays reach none. That takes about as long as reading it.
+        // Made when the first leaf is reached: many rays reach none. Its memory is asked for meanwhile.
         let shear = shear.get_or_insert_with(|| {
             layout.prefetch(child);
             simd.shear(ray)
