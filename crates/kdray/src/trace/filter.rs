@@ -3,70 +3,50 @@
 use std::arch::x86_64::*;
 
 use super::block::{Block, Filtered, LANES};
+use super::block_ray::BlockRay;
 use super::eights;
 use super::located::{Located, located, precisely_sheared};
 use super::prepare::Shear;
 use super::sift::{Crossed, Sifted, crossed, crossed_between, sheared, sift};
 use super::traverse::Visitor;
-use super::vector::{Arithmetic, Eight, Mask, Vector, by_axis};
+use super::vector::{Arithmetic, Eight, Four, Mask, Precise, PreciseEight, by_axis};
 use crate::geometry::{Hit, Ray};
 
-/// A ray in every lane.
-pub(super) struct RayLanes {
-    axes: [usize; 3],
-    origin: [Eight; 3],
-    slope: [Eight; 2],
-    precise_slope: [f64; 2],
-    t_per_z: f64,
-}
-
-impl RayLanes {
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    pub(super) fn new(ray: &Ray) -> Self {
-        let Shear { axes, origin, shear, precise_shear, t_per_z } = Shear::new(ray);
-        let all = |value: f32| Eight(_mm256_set1_ps(value));
-        let (origin, slope) = (origin.map(all), shear.map(all));
-        Self { axes, origin, slope, precise_slope: precise_shear, t_per_z }
-    }
-}
-
 impl Block {
-    /// The corners, their axes in the order of the ray's.
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    fn in_order(&self, ray: &RayLanes) -> [[Eight; 3]; 3] {
-        let mut corners = [ray.origin; 3];
-        for (corner, rows) in corners.iter_mut().zip(self.corners()) {
-            for (place, axis) in ray.axes.into_iter().enumerate() {
-                // SAFETY: axes are less than three; rows are eight lanes, aligned like the block.
-                corner[place] = Eight(unsafe { _mm256_load_ps(rows.get_unchecked(axis).as_ptr()) });
-            }
-        }
-        corners
-    }
-
     /// The corners in ray space.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    fn sheared_avx2(&self, ray: &RayLanes) -> [[Eight; 3]; 3] {
-        let corners = self.in_order(ray);
-        by_axis!(|corner| sheared(corners[corner], &ray.origin, &ray.slope))
+    fn sheared_avx2(&self, ray: &BlockRay) -> [[Eight; 3]; 3] {
+        let all = |number: f32| Eight(_mm256_set1_ps(number));
+        let origin = by_axis!(|axis| all(ray.origin[axis]));
+        let slope = [all(ray.slope[0]), all(ray.slope[1])];
+        by_axis!(|corner| {
+            let point = by_axis!(|axis| {
+                // SAFETY: rows are eight lanes, aligned like the block.
+                Eight(unsafe { _mm256_load_ps(ray.row(self, corner, axis)) })
+            });
+            sheared(point, &origin, &slope)
+        })
     }
 
     /// Where the line of the ray crosses the triangles.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    pub(super) fn located_avx2(&self, ray: &RayLanes) -> Located<Eight> {
-        let corners = self.in_order(ray);
-        let origin = by_axis!(|axis| ray.origin[axis].precise());
-        let [x, y] = ray.precise_slope;
-        let (slope, t_per_z) = ([origin[0].all(x), origin[0].all(y)], origin[0].all(ray.t_per_z));
+    fn located_avx2(&self, ray: &BlockRay) -> Located<PreciseEight> {
+        let all = |number: f64| PreciseEight([Four(_mm256_set1_pd(number)); 2]);
+        let origin = by_axis!(|axis| all(f64::from(ray.origin[axis])));
+        let slope = [all(ray.precise[0]), all(ray.precise[1])];
         let corners = by_axis!(|corner| {
-            let way = by_axis!(|axis| corners[corner][axis].precise() - origin[axis]);
+            let way = by_axis!(|axis| {
+                let row = ray.row(self, corner, axis);
+                // SAFETY: rows are eight lanes, aligned like the block.
+                let [low, high] = unsafe { [_mm_load_ps(row), _mm_load_ps(row.add(4))] };
+                let point = [Four(_mm256_cvtps_pd(low)), Four(_mm256_cvtps_pd(high))];
+                PreciseEight(point) - origin[axis]
+            });
             precisely_sheared(way, &slope)
         });
-        located(corners, t_per_z)
+        located(corners, all(ray.precise[2]))
     }
 
     /// The lanes that are hit in the interval, and where; and those of which that is not known in vectors.
@@ -79,13 +59,13 @@ impl Block {
     #[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
     pub(super) fn filter_avx2<V>(
         &self,
-        ray: &RayLanes,
+        ray: &BlockRay,
         [t_min, t_max]: [f32; 2],
         whether: bool,
     ) -> Filtered {
         let corners = self.sheared_avx2(ray);
-        let all = |number: f32| ray.origin[0].all(number);
-        let (first, last, t_per_z) = (all(t_min), all(t_max), all(ray.t_per_z as f32));
+        let all = |number: f32| Eight(_mm256_set1_ps(number));
+        let (first, last, t_per_z) = (all(t_min), all(t_max), all(ray.precise[2] as f32));
         let crossed = crossed(&corners);
         let (mut maybe, surely) = (crossed.maybe.bits(), crossed.surely.bits());
         if maybe == 0 {
@@ -101,7 +81,7 @@ impl Block {
             }
         }
         let Located { known, t, u, v } = self.located_avx2(ray);
-        let known = known & surely;
+        let (t, known) = (t.rounded(), known & surely);
         let inside = first.is_at_most(t).and(t.is_at_most(last)).bits();
         Filtered {
             maybe: maybe & (inside | !known),
@@ -109,7 +89,7 @@ impl Block {
             inside: inside & maybe & known,
             located: known,
             earliest: eights::Eights::numbers(t),
-            weights: [eights::Eights::numbers(u), eights::Eights::numbers(v)],
+            weights: [eights::Eights::numbers(u.rounded()), eights::Eights::numbers(v.rounded())],
         }
     }
 
@@ -119,13 +99,13 @@ impl Block {
     #[target_feature(enable = "avx2,fma")]
     pub(super) fn crossed_avx2<V: Visitor>(
         &self,
-        ray: &RayLanes,
+        ray: &BlockRay,
         [t_min, t_max]: [f32; 2],
     ) -> Sifted {
         let corners = self.sheared_avx2(ray);
         if V::ASKS_WHETHER {
-            let all = |number: f32| ray.origin[0].all(number);
-            let (sifted, _) = sift(&corners, all(ray.t_per_z as f32), [all(t_min), all(t_max)]);
+            let all = |number: f32| Eight(_mm256_set1_ps(number));
+            let (sifted, _) = sift(&corners, all(ray.precise[2] as f32), [all(t_min), all(t_max)]);
             sifted
         } else {
             let Crossed { maybe, surely, .. } = crossed(&corners);
@@ -135,22 +115,25 @@ impl Block {
 }
 
 impl Filtered {
-    /// [`Filtered::next`], all lanes at once. Those of which nothing is known come first.
+    /// [`Filtered::next`], all lanes at once. Those of which nothing is known come first; one that is left
+    /// alone comes, wherever it is hit.
     #[inline]
     #[target_feature(enable = "avx2")]
     #[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
     pub(super) fn next_avx2<V>(&mut self, until: f32) -> Option<usize> {
+        let maybe = self.maybe;
+        if maybe & maybe.wrapping_sub(1) == 0 {
+            self.maybe = 0;
+            return (maybe != 0).then(|| maybe.trailing_zeros() as usize & (LANES - 1));
+        }
         // SAFETY: eight lanes.
         let earliest = Eight(unsafe { _mm256_loadu_ps(self.earliest.as_ptr()) });
         let early = earliest.is_at_most(earliest.all(until)).bits();
-        let maybe = self.maybe & (early | !self.located);
-        let unknown = maybe & !self.located;
-        let is_alone = maybe & maybe.wrapping_sub(1) == 0;
-        let first = match (maybe, unknown) {
+        let maybe = maybe & (early | !self.located);
+        let first = match (maybe, maybe & !self.located) {
             (0, _) => return None,
-            (one, _) if is_alone => one.trailing_zeros() as usize,
             (_, 0) => eights::Eights::least_of(earliest, maybe).0,
-            (_, some) => some.trailing_zeros() as usize,
+            (_, unknown) => unknown.trailing_zeros() as usize,
         };
         let first = first & (LANES - 1);
         self.maybe = maybe & !(1 << first);

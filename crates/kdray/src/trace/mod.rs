@@ -47,6 +47,8 @@
 mod apart;
 mod batch;
 mod block;
+#[cfg(target_arch = "x86_64")]
+mod block_ray;
 mod closest;
 mod collapse;
 mod eights;

@@ -15,9 +15,24 @@ pub(super) struct Shear {
     pub(super) t_per_z: f64,
 }
 
-/// By sense and largest axis of the direction: the axes of ray space.
-const AXES: [[[usize; 3]; 3]; 2] =
-    [[[1, 2, 0], [2, 0, 1], [0, 1, 2]], [[2, 1, 0], [0, 2, 1], [1, 0, 2]]];
+/// By [`frame`]: the axes of ray space.
+pub(super) const AXES: [[usize; 3]; 6] =
+    [[1, 2, 0], [2, 0, 1], [0, 1, 2], [2, 1, 0], [0, 2, 1], [1, 0, 2]];
+
+/// The largest axis of a direction, or three more where it goes down there: then two axes of ray space
+/// change places, so that windings keep their sense.
+#[inline(always)]
+pub(super) fn frame(direction: &[f32; 3]) -> usize {
+    let [x, y, z] = direction.map(f32::abs);
+    let largest = if x > y {
+        if x > z { 0 } else { 2 }
+    } else if y > z {
+        1
+    } else {
+        2
+    };
+    if direction[largest] < 0.0 { largest + 3 } else { largest }
+}
 
 impl Shear {
     #[inline(always)]
@@ -34,16 +49,7 @@ impl Shear {
     /// The axes of ray space for a direction.
     #[inline(always)]
     pub(super) fn axes(direction: &[f32; 3]) -> [usize; 3] {
-        let [x, y, z] = direction.map(f32::abs);
-        let largest = if x > y {
-            if x > z { 0 } else { 2 }
-        } else if y > z {
-            1
-        } else {
-            2
-        };
-        // Two axes change places where the ray looks down, so that windings keep their sense.
-        AXES[usize::from(direction[largest] < 0.0)][largest]
+        AXES[frame(direction)]
     }
 }
 

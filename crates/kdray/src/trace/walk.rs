@@ -136,33 +136,63 @@ impl<'a, S: Simd> Walk<'a, S> {
 fn test_leaf<S: Simd, V: Visitor>(
     simd: S,
     (blocks, is_one): (&[Block], bool),
-    (ray, shear): (&Ray, &S::Shear),
+    ray: (&Ray, &S::Shear),
+    until: f32,
+    visitor: &mut V,
+) -> f32 {
+    let until = test_block(simd, &blocks[0], ray, until, visitor);
+    if is_one || blocks[0].is_last() || until == ENOUGH {
+        return until;
+    }
+    test_more(simd, &blocks[1..], ray, until, visitor)
+}
+
+/// The same of the blocks after the first. Few leaves have any; in a loop with the first one the compiler
+/// would make vectors of the ray before it, more than there are registers.
+#[inline(never)]
+fn test_more<S: Simd, V: Visitor>(
+    simd: S,
+    blocks: &[Block],
+    ray: (&Ray, &S::Shear),
     mut until: f32,
     visitor: &mut V,
 ) -> f32 {
     for block in blocks {
-        visitor.test();
-        let mut filtered = simd.filter(block, shear, [ray.t_min, until], V::ASKS_WHETHER);
-        if V::ASKS_WHETHER {
-            for lane in filtered.inside() {
-                until = lesser(until, visitor.inside(block.index(lane)));
-                if until == ENOUGH {
-                    return ENOUGH;
-                }
-            }
+        until = test_block(simd, block, ray, until, visitor);
+        if block.is_last() || until == ENOUGH {
+            break;
         }
-        while let Some(lane) = simd.next(&mut filtered, until) {
-            if visitor.knows(block.index(lane)) {
-                continue;
-            }
-            let Some(hit) = simd.hit(block, lane, &filtered, (ray, shear)) else { continue };
-            until = lesser(until, visitor.hit(hit));
+    }
+    until
+}
+
+/// Shows the visitor the hits of a block.
+#[inline(always)]
+fn test_block<S: Simd, V: Visitor>(
+    simd: S,
+    block: &Block,
+    (ray, shear): (&Ray, &S::Shear),
+    mut until: f32,
+    visitor: &mut V,
+) -> f32 {
+    visitor.test();
+    let mut filtered = simd.filter(block, shear, [ray.t_min, until], V::ASKS_WHETHER);
+    if V::ASKS_WHETHER {
+        for lane in filtered.inside() {
+            until = lesser(until, visitor.inside(block.index(lane)));
             if until == ENOUGH {
                 return ENOUGH;
             }
         }
-        if is_one || block.is_last() {
-            break;
+    }
+    while let Some(lane) = simd.next(&mut filtered, until) {
+        if visitor.knows(block.index(lane)) {
+            continue;
+        }
+        let Some(hit) = simd.hit(block, lane, &filtered, (ray, shear)) else { continue };
+        until = lesser(until, visitor.hit(hit));
+        if until == ENOUGH {
+            return ENOUGH;
         }
     }
     until

@@ -120,12 +120,17 @@ impl Batch<'_> {
         for (round, queries) in queries.chunks(round_length).enumerate() {
             meter.check()?;
             let start = |member: usize| round * round_length + member * CHUNK;
-            self.team.run(|| {
-                let work = team.par_iter_mut().zip(queries.par_chunks(CHUNK)).enumerate();
-                work.for_each(|(member, (found, queries))| {
-                    found.ask(start(member), queries, &ask);
+            if let [alone] = &mut team[..] {
+                // Another thread would have to be woken, a hundred times a second.
+                alone.ask(start(0), queries, &ask);
+            } else {
+                self.team.run(|| {
+                    let work = team.par_iter_mut().zip(queries.par_chunks(CHUNK)).enumerate();
+                    work.for_each(|(member, (found, queries))| {
+                        found.ask(start(member), queries, &ask);
+                    });
                 });
-            });
+            }
             for (member, (found, queries)) in team.iter_mut().zip(queries.chunks(CHUNK)).enumerate()
             {
                 let handed = hand_over(found, start(member), queries, &meter, &ask, &mut sink);

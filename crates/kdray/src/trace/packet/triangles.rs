@@ -59,8 +59,9 @@ impl<L: Vector> Triangles<L> {
     #[inline(always)]
     pub(super) fn locate(&self, block: &Block, place: usize) -> Where {
         let corners = by_axis!(|corner| self.precisely_sheared(&block.corners()[corner], place));
-        let Located { known, t, u, v } = located::<L>(corners, self.t_per_z);
-        Where { known, t: t.numbers(), u: u.numbers(), v: v.numbers() }
+        let Located { known, t, u, v } = located(corners, self.t_per_z);
+        let [t, u, v] = by_axis!(|column| [t, u, v][column].rounded().numbers());
+        Where { known, t, u, v }
     }
 
     /// A corner in ray space.

@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use super::{HasAvx2, HasAvx512, Simd};
 use crate::geometry::{Hit, Ray};
 use crate::trace::block::{Block, Filtered};
-use crate::trace::filter::RayLanes;
+use crate::trace::block_ray::BlockRay;
 use crate::trace::stack::Stack;
 use crate::trace::step::{self, Lanes};
 use crate::trace::wide::{Child, Wide};
@@ -46,7 +46,7 @@ macro_rules! simd {
 
         impl<V> Simd for $simd<V> {
             type Slabs = Lanes;
-            type Shear = RayLanes;
+            type Shear = BlockRay;
 
             #[inline(always)]
             fn slabs(self, ray: &Ray, reach: f32) -> Lanes {
@@ -55,9 +55,9 @@ macro_rules! simd {
             }
 
             #[inline(always)]
-            fn shear(self, ray: &Ray) -> RayLanes {
+            fn shear(self, ray: &Ray) -> BlockRay {
                 // SAFETY: as above.
-                unsafe { RayLanes::new(ray) }
+                unsafe { BlockRay::new(ray) }
             }
 
             #[inline(always)]
@@ -82,7 +82,7 @@ macro_rules! simd {
             fn filter(
                 self,
                 block: &Block,
-                shear: &RayLanes,
+                shear: &BlockRay,
                 interval: [f32; 2],
                 whether: bool,
             ) -> Filtered {
@@ -102,7 +102,7 @@ macro_rules! simd {
                 block: &Block,
                 lane: usize,
                 filtered: &Filtered,
-                (ray, _): (&Ray, &RayLanes),
+                (ray, _): (&Ray, &BlockRay),
             ) -> Option<Hit> {
                 filtered.hit(block, lane, ray)
             }

@@ -3,6 +3,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 
+use super::four::{Four, FourTruths};
 use super::{Arithmetic, MOST, Mask, Numbers, Precise, Vector, operators};
 use crate::geometry::Ray;
 use crate::trace::simd::HasAvx2;
@@ -17,11 +18,11 @@ pub(in crate::trace) struct EightTruths(pub(in crate::trace) __m256);
 
 /// Eight numbers in double precision in AVX2.
 #[derive(Clone, Copy)]
-pub(in crate::trace) struct PreciseEight([__m256d; 2]);
+pub(in crate::trace) struct PreciseEight(pub(in crate::trace) [Four; 2]);
 
 /// Truths of eight lanes in double precision.
 #[derive(Clone, Copy)]
-pub(in crate::trace) struct PreciseEightTruths([__m256d; 2]);
+pub(in crate::trace) struct PreciseEightTruths([FourTruths; 2]);
 
 operators! { Eight, |a, b|
     Add add _mm256_add_ps(a, b);
@@ -29,12 +30,21 @@ operators! { Eight, |a, b|
     Mul mul _mm256_mul_ps(a, b);
     Div div _mm256_div_ps(a, b);
 }
-operators! { PreciseEight, |a, b|
-    Add add [_mm256_add_pd(a[0], b[0]), _mm256_add_pd(a[1], b[1])];
-    Sub sub [_mm256_sub_pd(a[0], b[0]), _mm256_sub_pd(a[1], b[1])];
-    Mul mul [_mm256_mul_pd(a[0], b[0]), _mm256_mul_pd(a[1], b[1])];
-    Div div [_mm256_div_pd(a[0], b[0]), _mm256_div_pd(a[1], b[1])];
+
+/// Operators, half by half.
+macro_rules! halves {
+    ($($operator:ident $name:ident;)*) => {$(
+        impl $operator for PreciseEight {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                Self([self.0[0].$name(other.0[0]), self.0[1].$name(other.0[1])])
+            }
+        }
+    )*};
 }
+halves! { Add add; Sub sub; Mul mul; Div div; }
+
 impl Arithmetic for Eight {
     type Number = f32;
     type Mask = EightTruths;
@@ -76,46 +86,27 @@ impl Arithmetic for PreciseEight {
 
     #[inline(always)]
     fn all(self, number: f64) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { [_mm256_set1_pd(number); 2] })
+        Self([self.0[0].all(number); 2])
     }
 
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe {
-            [_mm256_min_pd(self.0[0], other.0[0]), _mm256_min_pd(self.0[1], other.0[1])]
-        })
+        Self([self.0[0].min(other.0[0]), self.0[1].min(other.0[1])])
     }
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe {
-            [_mm256_max_pd(self.0[0], other.0[0]), _mm256_max_pd(self.0[1], other.0[1])]
-        })
+        Self([self.0[0].max(other.0[0]), self.0[1].max(other.0[1])])
     }
 
     #[inline(always)]
     fn is_less(self, than: Self) -> PreciseEightTruths {
-        // SAFETY: as above.
-        PreciseEightTruths(unsafe {
-            [
-                _mm256_cmp_pd::<_CMP_LT_OQ>(self.0[0], than.0[0]),
-                _mm256_cmp_pd::<_CMP_LT_OQ>(self.0[1], than.0[1]),
-            ]
-        })
+        PreciseEightTruths([self.0[0].is_less(than.0[0]), self.0[1].is_less(than.0[1])])
     }
 
     #[inline(always)]
     fn is_at_most(self, most: Self) -> PreciseEightTruths {
-        // SAFETY: as above.
-        PreciseEightTruths(unsafe {
-            [
-                _mm256_cmp_pd::<_CMP_LE_OQ>(self.0[0], most.0[0]),
-                _mm256_cmp_pd::<_CMP_LE_OQ>(self.0[1], most.0[1]),
-            ]
-        })
+        PreciseEightTruths([self.0[0].is_at_most(most.0[0]), self.0[1].is_at_most(most.0[1])])
     }
 }
 
@@ -148,30 +139,22 @@ impl Mask for EightTruths {
 impl Mask for PreciseEightTruths {
     #[inline(always)]
     fn and(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe {
-            [_mm256_and_pd(self.0[0], other.0[0]), _mm256_and_pd(self.0[1], other.0[1])]
-        })
+        Self([self.0[0].and(other.0[0]), self.0[1].and(other.0[1])])
     }
 
     #[inline(always)]
     fn or(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe { [_mm256_or_pd(self.0[0], other.0[0]), _mm256_or_pd(self.0[1], other.0[1])] })
+        Self([self.0[0].or(other.0[0]), self.0[1].or(other.0[1])])
     }
 
     #[inline(always)]
     fn and_not(self, other: Self) -> Self {
-        // SAFETY: as above.
-        Self(unsafe {
-            [_mm256_andnot_pd(other.0[0], self.0[0]), _mm256_andnot_pd(other.0[1], self.0[1])]
-        })
+        Self([self.0[0].and_not(other.0[0]), self.0[1].and_not(other.0[1])])
     }
 
     #[inline(always)]
     fn bits(self) -> u32 {
-        // SAFETY: as above.
-        unsafe { (_mm256_movemask_pd(self.0[0]) | _mm256_movemask_pd(self.0[1]) << 4) as u32 }
+        self.0[0].bits() | self.0[1].bits() << 4
     }
 }
 
@@ -180,8 +163,9 @@ impl Precise for PreciseEight {
 
     #[inline(always)]
     fn rounded(self) -> Eight {
+        let [Four(low), Four(high)] = self.0;
         // SAFETY: as above.
-        Eight(unsafe { _mm256_set_m128(_mm256_cvtpd_ps(self.0[1]), _mm256_cvtpd_ps(self.0[0])) })
+        Eight(unsafe { _mm256_set_m128(_mm256_cvtpd_ps(high), _mm256_cvtpd_ps(low)) })
     }
 }
 
@@ -265,7 +249,8 @@ impl Vector for Eight {
         // SAFETY: as above.
         PreciseEight(unsafe {
             let high = _mm256_extractf128_ps::<1>(self.0);
-            [_mm256_cvtps_pd(_mm256_castps256_ps128(self.0)), _mm256_cvtps_pd(high)]
+            let low = _mm256_castps256_ps128(self.0);
+            [Four(_mm256_cvtps_pd(low)), Four(_mm256_cvtps_pd(high))]
         })
     }
 }

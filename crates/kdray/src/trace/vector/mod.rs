@@ -5,6 +5,8 @@
 
 #[cfg(target_arch = "x86_64")]
 mod eight;
+#[cfg(target_arch = "x86_64")]
+mod four;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 #[cfg(target_arch = "x86_64")]
@@ -20,7 +22,9 @@ use crate::geometry::Ray;
 pub(in crate::trace) use crate::trace::eights::by_axis;
 
 #[cfg(target_arch = "x86_64")]
-pub(in crate::trace) use eight::Eight;
+pub(in crate::trace) use eight::{Eight, PreciseEight};
+#[cfg(target_arch = "x86_64")]
+pub(in crate::trace) use four::Four;
 #[cfg(target_arch = "aarch64")]
 pub(in crate::trace) use neon::Eight;
 #[cfg(target_arch = "x86_64")]

@@ -5,19 +5,24 @@
 //! a jump, as more pairs, or as pairs of a ray and a block. So it goes with the blocks, and with the
 //! triangles that may be hit there. The processor works on the next pairs while it reads the last.
 
+mod crossings;
+mod pairs;
+mod ready;
+
 use std::arch::x86_64::*;
 
+use self::crossings::{Crossing, Crossings, located_four};
+use self::pairs::{Pair, Pairs};
+use self::ready::{Ready, meet};
 use super::block::Block;
-use super::eights::Eights;
-use super::filter::{RayLanes, unknown_hit};
+use super::block_ray::BlockRay;
+use super::filter::unknown_hit;
 use super::located::Located;
-use super::prepare::Slabs;
 use super::sift::Sifted;
 use super::simd::HasAvx2;
-use super::step::places;
 use super::traverse::{Trip, Visitor};
-use super::vector::lanes;
-use super::wide::{Child, Wide};
+use super::vector::{Precise, lanes};
+use super::wide::{Child, Layout, Wide};
 use crate::geometry::{Hit, Ray};
 
 /// Rays that are on their way together: what is known of them stays in the nearest cache.
@@ -31,83 +36,7 @@ const TOGETHER: usize = 64;
 const BLOCKS: usize = 512;
 
 /// How many pairs ahead memory is asked for.
-const AHEAD: usize = 8;
-
-/// A ray, by its place, and a node or a block that it meets.
-#[derive(Clone, Copy)]
-struct Pair {
-    ray: u32,
-    child: Child,
-}
-
-/// Pairs in two columns. Eight are written at a time, however many of them count.
-struct Pairs {
-    rays: Vec<u32>,
-    children: Vec<Child>,
-    len: usize,
-}
-
-impl Pairs {
-    fn new() -> Self {
-        Self { rays: Vec::new(), children: Vec::new(), len: 0 }
-    }
-
-    /// Makes room for so many pairs more, and for eight.
-    fn reserve(&mut self, more: usize) {
-        let len = self.len + more + 8;
-        if self.rays.len() < len {
-            self.rays.resize(2 * len, 0);
-            self.children.resize(2 * len, Child::NONE);
-        }
-    }
-
-    /// Adds those of eight children whose bit is set.
-    #[inline]
-    #[target_feature(enable = "avx2,popcnt")]
-    fn push(&mut self, ray: u32, children: __m256i, mask: u32) {
-        debug_assert!(self.len + 8 <= self.rays.len(), "there is room");
-        let children = _mm256_permutevar8x32_epi32(children, places(mask));
-        // SAFETY: there is room for eight.
-        unsafe {
-            let rays = self.rays.as_mut_ptr().add(self.len);
-            _mm256_storeu_si256(rays.cast(), _mm256_set1_epi32(ray as i32));
-            _mm256_storeu_si256(self.children.as_mut_ptr().add(self.len).cast(), children);
-        }
-        self.len += mask.count_ones() as usize;
-    }
-
-    /// Adds one. There is room.
-    fn add(&mut self, pair: Pair) {
-        (self.rays[self.len], self.children[self.len]) = (pair.ray, pair.child);
-        self.len += 1;
-    }
-
-    fn get(&self, index: usize) -> Pair {
-        Pair { ray: self.rays[index], child: self.children[index] }
-    }
-
-    /// Takes the last pairs, at most so many.
-    fn take(&mut self, into: &mut [Pair]) -> usize {
-        let count = self.len.min(into.len());
-        self.len -= count;
-        for (index, pair) in into[..count].iter_mut().enumerate() {
-            *pair = self.get(self.len + index);
-        }
-        count
-    }
-}
-
-/// Triangles of a block that a ray may hit.
-#[derive(Clone, Copy)]
-struct Candidates {
-    ray: u32,
-    block: u32,
-    /// Bits of lanes: those that may be hit, that are crossed for certain, and that are hit in the
-    /// ray's interval for certain.
-    maybe: u32,
-    surely: u32,
-    inside: u32,
-}
+const AHEAD: usize = 12;
 
 /// Walks all `rays` and shows their visitors all hits, in no order. Rays without a visitor stay away.
 #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
@@ -118,7 +47,13 @@ pub(super) fn trace_avx2<V: Visitor>(
     mut begin: impl FnMut(usize, &Ray) -> Option<V>,
     mut end: impl FnMut(usize, V),
 ) {
-    let mut wave = Wave { trip, nodes: Pairs::new(), leaves: Pairs::new() };
+    let mut wave = Wave {
+        trip,
+        nodes: Pairs::new(),
+        leaves: Pairs::new(),
+        inside: Crossings::new(),
+        crossed: Crossings::new(),
+    };
     let mut visitors = Vec::with_capacity(RAYS);
     for (group, rays) in rays.chunks(RAYS).enumerate() {
         let begun = rays.iter().enumerate().map(|(at, ray)| begin(group * RAYS + at, ray));
@@ -136,15 +71,19 @@ struct Wave<'a> {
     trip: &'a Trip,
     nodes: Pairs,
     leaves: Pairs,
+    /// Hits for certain, if it is enough to know that.
+    inside: Crossings,
+    /// What is crossed, and is to be located.
+    crossed: Crossings,
 }
 
 impl Wave<'_> {
     #[inline]
     #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
     fn visit<V: Visitor>(&mut self, rays: &[Ray], visitors: &mut [Option<V>]) {
-        let slabs: Vec<Slabs> = rays.iter().map(|ray| Slabs::new(ray, self.trip.reach)).collect();
+        let ready: Vec<Ready> = rays.iter().map(|ray| Ready::new(ray, self.trip.reach)).collect();
         // Made when the first block is reached: many rays reach none.
-        let mut shears = [const { None }; RAYS];
+        let mut prepared = [const { None }; RAYS];
         self.nodes.reserve(rays.len());
         for at in (0..rays.len()).filter(|at| visitors[*at].is_some()) {
             self.nodes.add(Pair { ray: at as u32, child: Child(0) });
@@ -152,9 +91,9 @@ impl Wave<'_> {
         let mut pairs = [Pair { ray: 0, child: Child(0) }; TOGETHER];
         loop {
             let count = self.nodes.take(&mut pairs);
-            self.step(rays, &slabs, &pairs[..count]);
+            self.step(&ready, &pairs[..count]);
             if self.leaves.len >= BLOCKS || count == 0 {
-                self.test(rays, &mut shears, visitors);
+                self.test(rays, &mut prepared, visitors);
             }
             if count == 0 {
                 return;
@@ -165,18 +104,22 @@ impl Wave<'_> {
     /// Steps down from nodes.
     #[inline]
     #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
-    fn step(&mut self, rays: &[Ray], slabs: &[Slabs], pairs: &[Pair]) {
+    fn step(&mut self, ready: &[Ready], pairs: &[Pair]) {
         self.nodes.reserve(8 * pairs.len());
         self.leaves.reserve(8 * pairs.len());
+        let wides = &self.trip.layout.wides[..];
+        for pair in &pairs[..AHEAD.min(pairs.len())] {
+            prefetch(wides.as_ptr().wrapping_add(pair.child.0 as usize));
+        }
         for (index, pair) in pairs.iter().enumerate() {
-            self.trip.layout.prefetch(pairs[(index + AHEAD).min(pairs.len() - 1)].child);
-            let at = pair.ray as usize;
+            let ahead = pairs[(index + AHEAD).min(pairs.len() - 1)].child;
+            prefetch(wides.as_ptr().wrapping_add(ahead.0 as usize));
             // SAFETY: rays and children of pairs are those of the wave and of the layout.
-            let (slabs, ray, wide) = unsafe {
-                let wide = self.trip.layout.wides.get_unchecked(pair.child.0 as usize);
-                (slabs.get_unchecked(at), rays.get_unchecked(at), wide)
+            let (ready, wide) = unsafe {
+                let wide = wides.get_unchecked(pair.child.0 as usize);
+                (ready.get_unchecked(pair.ray as usize), wide)
             };
-            let met = meet(wide, slabs, ray);
+            let met = meet(wide, ready);
             // SAFETY: eight lanes, aligned like the node.
             let children = unsafe { _mm256_load_si256(wide.children.as_ptr().cast()) };
             // Leaves have the sign bit.
@@ -192,93 +135,105 @@ impl Wave<'_> {
     fn test<V: Visitor>(
         &mut self,
         rays: &[Ray],
-        shears: &mut [Option<RayLanes>],
+        prepared: &mut [Option<BlockRay>],
         visitors: &mut [Option<V>],
     ) {
-        let blocks = &self.trip.layout.blocks[..];
-        let mut found = [Candidates { ray: 0, block: 0, maybe: 0, surely: 0, inside: 0 }; BLOCKS];
-        let mut count = 0;
+        let Trip { layout: Layout { blocks, .. }, .. } = self.trip;
         for index in 0..self.leaves.len {
             let Pair { ray: at, child } = self.leaves.get(index);
-            self.trip.layout.prefetch(self.leaves.children[index + AHEAD]);
-            let interval = [rays[at as usize].t_min, rays[at as usize].t_max];
+            let ahead = self.leaves.get((index + AHEAD).min(self.leaves.len - 1));
+            self.trip.layout.prefetch(ahead.child);
+            let ray = &rays[at as usize];
             for place in child.block().unwrap_or(0).. {
-                if count == BLOCKS {
-                    show(blocks, &found, (rays, shears), visitors);
-                    count = 0;
-                }
-                let shear =
-                    shears[at as usize].get_or_insert_with(|| RayLanes::new(&rays[at as usize]));
+                let block = &blocks[place];
+                let ready = prepared[at as usize].get_or_insert_with(|| BlockRay::new(ray));
                 let Sifted { maybe, surely, inside } =
-                    blocks[place].crossed_avx2::<V>(shear, interval);
-                found[count] = Candidates { ray: at, block: place as u32, maybe, surely, inside };
-                count += usize::from(maybe != 0);
-                if child.is_one() || blocks[place].is_last() {
+                    block.crossed_avx2::<V>(ready, [ray.t_min, ray.t_max]);
+                if V::ASKS_WHETHER {
+                    self.inside.push(at, place as u32, inside);
+                }
+                self.crossed.push(at, place as u32, maybe & surely & !inside);
+                if maybe & !surely != 0 {
+                    show_unsure(block, maybe & !surely, ray, &mut visitors[at as usize]);
+                }
+                if self.inside.is_full() || self.crossed.is_full() {
+                    self.show(rays, prepared, visitors);
+                }
+                if child.is_one() || block.is_last() {
                     break;
                 }
             }
         }
-        show(blocks, &found[..count], (rays, shears), visitors);
         self.leaves.len = 0;
+        self.show(rays, prepared, visitors);
     }
-}
 
-/// Shows hits of candidates.
-#[inline]
-#[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
-fn show<V: Visitor>(
-    blocks: &[Block],
-    found: &[Candidates],
-    (rays, shears): (&[Ray], &[Option<RayLanes>]),
-    visitors: &mut [Option<V>],
-) {
-    for candidates in found {
-        let block = &blocks[candidates.block as usize];
-        let at = candidates.ray as usize;
-        let (Some(shear), Some(visitor)) = (&shears[at], &mut visitors[at]) else { continue };
-        let inside = if V::ASKS_WHETHER { candidates.inside } else { 0 };
-        for lane in lanes(inside) {
-            visitor.inside(block.index(lane));
-        }
-        let news = |lane: &usize| !visitor.knows(block.index(*lane));
-        let rest =
-            lanes(candidates.maybe & !inside).filter(news).fold(0, |all, lane| all | 1 << lane);
-        if rest == 0 {
-            continue;
-        }
-        let Located { known, t, u, v } = block.located_avx2(shear);
-        let [t, u, v] = [t.numbers(), u.numbers(), v.numbers()];
-        for lane in lanes(rest) {
-            let triangle = block.index(lane);
-            let surely = candidates.surely >> lane & 1 == 1;
-            if known >> lane & 1 == 1 && surely {
-                visitor.hit(Hit { t: t[lane], triangle, u: u[lane], v: v[lane] });
-            } else if let Some(hit) = unknown_hit(block, lane, surely, &rays[at]) {
-                visitor.hit(hit);
+    /// Shows the hits among crossings.
+    #[inline]
+    #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
+    fn show<V: Visitor>(
+        &mut self,
+        rays: &[Ray],
+        prepared: &[Option<BlockRay>],
+        visitors: &mut [Option<V>],
+    ) {
+        let Trip { layout: Layout { blocks, .. }, .. } = self.trip;
+        for index in 0..self.inside.len() {
+            let Crossing { ray, block, lane } = self.inside.get(index);
+            if let Some(visitor) = &mut visitors[ray] {
+                visitor.inside(blocks[block].index(lane));
             }
         }
+        self.inside.clear();
+        let count = self.crossed.len();
+        for first in (0..count).step_by(4) {
+            // The last ones are fewer: then one of them is there more than once.
+            let four = [0, 1, 2, 3].map(|at| self.crossed.get((first + at).min(count - 1)));
+            let [Some(a), Some(b), Some(c), Some(d)] =
+                [0, 1, 2, 3].map(|at| &prepared[four[at].ray])
+            else {
+                continue;
+            };
+            let at = |ray, at: usize| (ray, &blocks[four[at].block], four[at].lane);
+            let Located { known, t, u, v } = located_four([at(a, 0), at(b, 1), at(c, 2), at(d, 3)]);
+            let [t, u, v] = [t.rounded(), u.rounded(), v.rounded()];
+            for (place, Crossing { ray, block, lane }) in
+                four[..(count - first).min(4)].iter().enumerate()
+            {
+                let Some(visitor) = &mut visitors[*ray] else { continue };
+                let (block, triangle) = (&blocks[*block], blocks[*block].index(*lane));
+                if known >> place & 1 == 1 {
+                    if !visitor.knows(triangle) {
+                        visitor.hit(Hit { t: t[place], triangle, u: u[place], v: v[place] });
+                    }
+                } else if let Some(hit) = unknown_hit(block, *lane, true, &rays[*ray]) {
+                    visitor.hit(hit);
+                }
+            }
+        }
+        self.crossed.clear();
     }
 }
 
-/// The children that the ray meets, a bit each: [`meet`](super::step::meet) of a ray as single
-/// numbers, since those of all rays of a wave stay in the nearest cache.
-#[inline]
-#[target_feature(enable = "avx2,fma")]
-fn meet(wide: &Wide, slabs: &Slabs, ray: &Ray) -> u32 {
-    let mut enter = _mm256_set1_ps(ray.t_min);
-    let mut leave = _mm256_set1_ps(ray.t_max);
-    for axis in 0..3 {
-        let backward = slabs.backward[axis];
-        // SAFETY: there are two ends; eight lanes each, aligned like the node.
-        let [near, far] = [backward, 1 - backward]
-            .map(|end| unsafe { _mm256_load_ps(wide.bounds.get_unchecked(end)[axis].as_ptr()) });
-        let inverse = _mm256_set1_ps(slabs.inverse[axis]);
-        let near = _mm256_fmsub_ps(near, inverse, _mm256_set1_ps(slabs.enter[axis]));
-        let far = _mm256_fmsub_ps(far, inverse, _mm256_set1_ps(slabs.leave[axis]));
-        enter = _mm256_max_ps(enter, near);
-        leave = _mm256_min_ps(leave, far);
+/// Shows what is hit of triangles that a ray may cross, a bit each.
+#[cold]
+#[inline(never)]
+fn show_unsure<V: Visitor>(block: &Block, mask: u32, ray: &Ray, visitor: &mut Option<V>) {
+    let Some(visitor) = visitor else { return };
+    for lane in lanes(mask) {
+        if let Some(hit) = unknown_hit(block, lane, false, ray) {
+            visitor.hit(hit);
+        }
     }
-    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(enter, leave)) as u32
+}
+
+/// Asks for the memory of a node.
+#[inline(always)]
+fn prefetch(wide: *const Wide) {
+    for line in (0..size_of::<Wide>()).step_by(64) {
+        // SAFETY: a prefetch reads nothing, wherever it points.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(wide.cast::<i8>().wrapping_add(line)) };
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,95 @@
+//! A ray as blocks want it.
+
+use std::arch::x86_64::*;
+
+use super::block::{Block, LANES};
+use super::prepare::{AXES, frame};
+use crate::geometry::Ray;
+
+/// A ray ready for the triangles of blocks, as [`Shear`](super::prepare::Shear) is for one: single numbers, of which every test
+/// makes vectors as it reads them.
+pub(super) struct BlockRay {
+    /// Where the rows of the axes of ray space start, in bytes.
+    rows: [u32; 4],
+    /// In the order of these axes.
+    pub(super) origin: [f32; 4],
+    pub(super) slope: [f32; 2],
+    /// The slope in double precision, and `t` per unit of z.
+    pub(super) precise: [f64; 4],
+}
+
+impl BlockRay {
+    /// The arithmetic of [`Shear::new`](super::prepare::Shear::new), on all axes at once.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(super) fn new(ray: &Ray) -> Self {
+        let axes = &FRAMES[frame(&ray.direction)];
+        // SAFETY: a ray is eight numbers, and there are four axes; the fourth is of no consequence.
+        let [origin, direction, axes] = unsafe {
+            let start = std::ptr::from_ref(ray).cast::<f32>();
+            let axes = _mm_loadu_si128(axes.as_ptr().cast());
+            [
+                _mm_permutevar_ps(_mm_loadu_ps(start), axes),
+                _mm_permutevar_ps(_mm_loadu_ps(start.add(4)), axes),
+                _mm_castsi128_ps(axes),
+            ]
+        };
+        let across = _mm_cvtps_pd(direction);
+        let along = _mm_cvtps_pd(_mm_movehl_ps(direction, direction));
+        let t_per_z = _mm_div_sd(_mm_set_sd(1.0), along);
+        let slope = _mm_mul_pd(across, _mm_movedup_pd(t_per_z));
+        let mut new = Self { rows: [0; 4], origin: [0.0; 4], slope: [0.0; 2], precise: [0.0; 4] };
+        let rows = _mm_slli_epi32::<ROW_BITS>(_mm_castps_si128(axes));
+        let rounded = _mm_castps_pd(_mm_cvtpd_ps(slope));
+        // SAFETY: there is room for as many numbers.
+        unsafe {
+            _mm_storeu_si128(new.rows.as_mut_ptr().cast(), rows);
+            _mm_storeu_ps(new.origin.as_mut_ptr(), origin);
+            _mm_storel_pd(new.slope.as_mut_ptr().cast(), rounded);
+            _mm_storeu_pd(new.precise.as_mut_ptr(), slope);
+            _mm_storel_pd(new.precise.as_mut_ptr().add(2), t_per_z);
+        }
+        new
+    }
+
+    /// Where the row of a corner's coordinates starts in a block, by the place of their axis in ray space.
+    #[inline(always)]
+    pub(super) fn row(&self, block: &Block, corner: usize, place: usize) -> *const f32 {
+        let corner = block.corners()[corner].as_ptr().cast::<u8>();
+        corner.wrapping_add(self.rows[place] as usize).cast()
+    }
+
+    /// The origin, in the order of the axes of ray space, and a number of no consequence.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(super) fn origin_avx2(&self) -> __m128 {
+        // SAFETY: they are four.
+        unsafe { _mm_loadu_ps(self.origin.as_ptr()) }
+    }
+
+    /// The slope in double precision, `t` per unit of z, and a number of no consequence.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(super) fn precise_avx2(&self) -> __m256d {
+        // SAFETY: they are four.
+        unsafe { _mm256_loadu_pd(self.precise.as_ptr()) }
+    }
+}
+
+/// [`AXES`], for permutations.
+static FRAMES: [[u32; 4]; 6] = {
+    let mut frames = [[3; 4]; 6];
+    let mut frame = 0;
+    while frame < 6 {
+        let mut place = 0;
+        while place < 3 {
+            frames[frame][place] = AXES[frame][place] as u32;
+            place += 1;
+        }
+        frame += 1;
+    }
+    frames
+};
+
+/// A row of a block's corners has so many bytes, as a power of two.
+const ROW_BITS: i32 = size_of::<[f32; LANES]>().trailing_zeros() as i32;
