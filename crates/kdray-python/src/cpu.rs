@@ -86,7 +86,7 @@ impl Asked<'_, '_> {
         let list = |(part, (counts, found)): (usize, (&mut [i64], &mut Vec<Hit>))| {
             let range = self.range(size, part);
             let rays: Vec<Ray> = range.clone().map(|index| self.rays.get(index)).collect();
-            let batch = self.batch(range)?;
+            let batch = self.batch_of(range, 1)?;
             let mut counts = counts.iter_mut();
             let take = |lists: Lists<'_, Hit>| {
                 for (list, count) in lists.lists().zip(counts.by_ref()) {
@@ -177,7 +177,13 @@ impl Asked<'_, '_> {
 
     /// What answers some of the rays.
     fn batch(&self, range: Range<usize>) -> Result<Batch<'_>, BatchError> {
+        self.batch_of(range, 0)
+    }
+
+    /// The same on so many threads; 0 for all, and 1 for the one that asks.
+    fn batch_of(&self, range: Range<usize>, threads: usize) -> Result<Batch<'_>, BatchError> {
         self.scene.tracer().batch(BatchOptions {
+            threads,
             visible: self.rays.mask,
             except: self.rays.except(range),
             ..self.watch.batch_options()

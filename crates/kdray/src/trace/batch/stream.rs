@@ -121,7 +121,7 @@ impl Batch<'_> {
             meter.check()?;
             let start = |member: usize| round * round_length + member * CHUNK;
             if let [alone] = &mut team[..] {
-                // Another thread would have to be woken, a hundred times a second.
+                // Another thread would have to be woken for every chunk.
                 alone.ask(start(0), queries, &ask);
             } else {
                 self.team.run(|| {

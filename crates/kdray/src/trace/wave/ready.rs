@@ -4,7 +4,7 @@ use std::arch::x86_64::*;
 
 use crate::geometry::Ray;
 use crate::trace::prepare::Slabs;
-use crate::trace::step::ROWS;
+use crate::trace::step::{ROW, ROWS};
 use crate::trace::wide::Wide;
 
 /// A ray on one line of the cache: [`Slabs`] as single numbers, of which a step makes
@@ -17,8 +17,8 @@ pub(super) struct Ready {
     leave: [f32; 3],
     t_min: f32,
     t_max: f32,
-    /// Where a node's rows of bounds start, in bytes: those that come first, and those that come last.
-    rows: [u16; 6],
+    /// By axis, where the row of a node's bounds starts that comes first, in bytes.
+    rows: [u32; 3],
 }
 
 impl Ready {
@@ -30,7 +30,7 @@ impl Ready {
             leave: slabs.leave.map(|number| -number),
             t_min: ray.t_min,
             t_max: ray.t_max,
-            rows: ROWS[slabs.octant()].map(|row| row as u16),
+            rows: std::array::from_fn(|axis| ROWS[slabs.octant()][axis] as u32),
         }
     }
 }
@@ -43,9 +43,11 @@ pub(super) fn meet(wide: &Wide, ready: &Ready) -> u32 {
     let mut enter = _mm256_set1_ps(ready.t_min);
     let mut leave = _mm256_set1_ps(ready.t_max);
     for axis in 0..3 {
+        // The rows of an axis are as far from the ends.
+        let (first, both) = (ready.rows[axis] as usize, ROW * (3 + 2 * axis));
         // SAFETY: there are six rows; they are eight lanes each, aligned like the node.
-        let [near, far] = [axis, 3 + axis]
-            .map(|row| unsafe { _mm256_load_ps(bounds.add(ready.rows[row] as usize).cast()) });
+        let [near, far] = [first, both - first]
+            .map(|row| unsafe { _mm256_load_ps(bounds.wrapping_add(row).cast()) });
         let inverse = _mm256_set1_ps(ready.inverse[axis]);
         let near = _mm256_fmadd_ps(near, inverse, _mm256_set1_ps(ready.enter[axis]));
         let far = _mm256_fmadd_ps(far, inverse, _mm256_set1_ps(ready.leave[axis]));
