@@ -6,15 +6,15 @@ use super::block::{Block, LANES};
 use super::prepare::{AXES, frame};
 use crate::geometry::Ray;
 
-/// A ray ready for the triangles of blocks, as [`Shear`](super::prepare::Shear) is for one: single numbers, of which every test
-/// makes vectors as it reads them.
+/// A ray ready for the triangles of blocks, as [`Shear`](super::prepare::Shear) is for one: single
+/// numbers, of which every test makes vectors as it reads them.
 pub(super) struct BlockRay {
     /// Where the rows of the axes of ray space start, in bytes.
     rows: [u32; 4],
     /// In the order of these axes.
     pub(super) origin: [f32; 4],
     pub(super) slope: [f32; 2],
-    /// The slope in double precision, and `t` per unit of z.
+    /// The slope in double precision, `t` per unit of z, and a number of no consequence.
     pub(super) precise: [f64; 4],
 }
 

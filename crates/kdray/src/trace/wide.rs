@@ -111,22 +111,28 @@ impl Layout {
     /// Asks for the memory of a wide node, or of the first block of a leaf.
     #[inline(always)]
     pub(super) fn prefetch(&self, child: Child) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            let at = child.0 as usize;
-            let (start, bytes): (*const i8, _) = match child.block() {
-                None => (self.wides.as_ptr().wrapping_add(at).cast(), size_of::<Wide>()),
-                Some(first) => {
-                    (self.blocks.as_ptr().wrapping_add(first).cast(), size_of::<Block>())
-                }
-            };
-            for line in (0..bytes).step_by(64) {
-                // SAFETY: a prefetch reads nothing, wherever it points.
-                unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(line)) };
-            }
+        match child.block() {
+            None => self.prefetch_wide(child),
+            Some(first) => prefetch(self.blocks.as_ptr().wrapping_add(first)),
         }
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = child;
     }
+
+    /// Asks for the memory of a child that is a wide node.
+    #[inline(always)]
+    pub(super) fn prefetch_wide(&self, child: Child) {
+        prefetch(self.wides.as_ptr().wrapping_add(child.0 as usize));
+    }
+}
+
+/// Asks for the memory of what may be there.
+#[inline(always)]
+fn prefetch<T>(it: *const T) {
+    #[cfg(target_arch = "x86_64")]
+    for line in (0..size_of::<T>()).step_by(64) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: a prefetch reads nothing, wherever it points.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(it.cast::<i8>().wrapping_add(line)) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = it;
 }

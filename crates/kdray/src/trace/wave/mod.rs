@@ -22,7 +22,7 @@ use super::sift::Sifted;
 use super::simd::HasAvx2;
 use super::traverse::{Trip, Visitor};
 use super::vector::{Precise, lanes};
-use super::wide::{Child, Layout, Wide};
+use super::wide::{Child, Layout};
 use crate::geometry::{Hit, Ray};
 
 /// Rays that are on their way together: what is known of them stays in the nearest cache.
@@ -107,16 +107,15 @@ impl Wave<'_> {
     fn step(&mut self, ready: &[Ready], pairs: &[Pair]) {
         self.nodes.reserve(8 * pairs.len());
         self.leaves.reserve(8 * pairs.len());
-        let wides = &self.trip.layout.wides[..];
+        let layout = &self.trip.layout;
         for pair in &pairs[..AHEAD.min(pairs.len())] {
-            prefetch(wides.as_ptr().wrapping_add(pair.child.0 as usize));
+            layout.prefetch_wide(pair.child);
         }
         for (index, pair) in pairs.iter().enumerate() {
-            let ahead = pairs[(index + AHEAD).min(pairs.len() - 1)].child;
-            prefetch(wides.as_ptr().wrapping_add(ahead.0 as usize));
+            layout.prefetch_wide(pairs[(index + AHEAD).min(pairs.len() - 1)].child);
             // SAFETY: rays and children of pairs are those of the wave and of the layout.
             let (ready, wide) = unsafe {
-                let wide = wides.get_unchecked(pair.child.0 as usize);
+                let wide = layout.wides.get_unchecked(pair.child.0 as usize);
                 (ready.get_unchecked(pair.ray as usize), wide)
             };
             let met = meet(wide, ready);
@@ -224,15 +223,6 @@ fn show_unsure<V: Visitor>(block: &Block, mask: u32, ray: &Ray, visitor: &mut Op
         if let Some(hit) = unknown_hit(block, lane, false, ray) {
             visitor.hit(hit);
         }
-    }
-}
-
-/// Asks for the memory of a node.
-#[inline(always)]
-fn prefetch(wide: *const Wide) {
-    for line in (0..size_of::<Wide>()).step_by(64) {
-        // SAFETY: a prefetch reads nothing, wherever it points.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(wide.cast::<i8>().wrapping_add(line)) };
     }
 }
 
