@@ -8,6 +8,7 @@ use crate::geometry::Ray;
 
 /// A ray ready for the triangles of blocks, as [`Shear`](super::prepare::Shear) is for one: single
 /// numbers, of which every test makes vectors as it reads them.
+#[derive(Clone, Default)]
 pub(super) struct BlockRay {
     /// Where the rows of the axes of ray space start, in bytes.
     rows: [u32; 4],
@@ -38,7 +39,7 @@ impl BlockRay {
         let along = _mm_cvtps_pd(_mm_movehl_ps(direction, direction));
         let t_per_z = _mm_div_sd(_mm_set_sd(1.0), along);
         let slope = _mm_mul_pd(across, _mm_movedup_pd(t_per_z));
-        let mut new = Self { rows: [0; 4], origin: [0.0; 4], slope: [0.0; 2], precise: [0.0; 4] };
+        let mut new = Self::default();
         let rows = _mm_slli_epi32::<ROW_BITS>(_mm_castps_si128(axes));
         let rounded = _mm_castps_pd(_mm_cvtpd_ps(slope));
         // SAFETY: there is room for as many numbers.

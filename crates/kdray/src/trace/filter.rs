@@ -8,8 +8,8 @@ use super::eights;
 use super::located::{Located, located, precisely_sheared};
 use super::prepare::Shear;
 use super::sift::{Crossed, Sifted, crossed, crossed_between, sheared, sift};
-use super::traverse::Visitor;
 use super::vector::{Arithmetic, Eight, Four, Mask, Precise, PreciseEight, by_axis};
+use super::wave::Kept;
 use crate::geometry::{Hit, Ray};
 
 impl Block {
@@ -97,13 +97,9 @@ impl Block {
     /// that is asked for, those that are hit in the interval for certain.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    pub(super) fn crossed_avx2<V: Visitor>(
-        &self,
-        ray: &BlockRay,
-        [t_min, t_max]: [f32; 2],
-    ) -> Sifted {
+    pub(super) fn crossed_avx2<T: Kept>(&self, ray: &BlockRay, [t_min, t_max]: [f32; 2]) -> Sifted {
         let corners = self.sheared_avx2(ray);
-        if V::ASKS_WHETHER {
+        if T::ASKS_WHETHER {
             let all = |number: f32| Eight(_mm256_set1_ps(number));
             let (sifted, _) = sift(&corners, all(ray.precise[2] as f32), [all(t_min), all(t_max)]);
             sifted

@@ -147,46 +147,6 @@ impl<F: Fn(u32) -> bool> Visitor for FirstHits<F> {
     }
 }
 
-/// Keeps all hits, in whatever order they come.
-pub(super) struct AllHits<F> {
-    t_min: f32,
-    t_max: f32,
-    accept: F,
-    hits: Vec<Hit>,
-}
-
-impl<F> AllHits<F> {
-    /// Keeps them in `hits`, which is empty.
-    pub(super) fn new(ray: &Ray, accept: F, hits: Vec<Hit>) -> Self {
-        Self { t_min: ray.t_min, t_max: ray.t_max, accept, hits }
-    }
-
-    /// All hits, in order and each once.
-    pub(super) fn in_order(mut self) -> Vec<Hit> {
-        self.hits.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
-        // A triangle in several leaves gives the very same hit in each of them.
-        self.hits.dedup_by_key(|hit| hit.triangle);
-        self.hits
-    }
-}
-
-impl<F: Fn(u32) -> bool> Visitor for AllHits<F> {
-    const WANTS_ALL: bool = true;
-
-    #[inline(always)]
-    fn hit(&mut self, hit: Hit) -> f32 {
-        if self.t_min <= hit.t && hit.t <= self.t_max && (self.accept)(hit.triangle) {
-            self.hits.push(hit);
-        }
-        self.t_max
-    }
-
-    #[inline(always)]
-    fn knows(&self, triangle: u32) -> bool {
-        self.hits.iter().rev().take(4).any(|hit| hit.triangle == triangle)
-    }
-}
-
 /// Counts hits, each triangle once, and asks where they are only if it must.
 ///
 /// Few rays hit more triangles than there is room for here.
@@ -212,8 +172,6 @@ impl<F> Crossings<F> {
 }
 
 impl<F: Fn(u32) -> bool> Visitor for Crossings<F> {
-    const WANTS_ALL: bool = true;
-
     #[inline(always)]
     fn hit(&mut self, hit: Hit) -> f32 {
         if self.t_min <= hit.t && hit.t <= self.t_max {

@@ -32,8 +32,8 @@
 //!
 //! `collapse` lays the tree out in the nodes of eight boxes of `wide`; `prepare` makes of a ray
 //! what traversal needs; `traverse` visits the leaves along it from front to back, `walk`ing `step`
-//! by `step`, and `stream` does so for several rays at a time, some of them as a `packet` or a
-//! `wave`. `block` holds the triangles of a leaf, eight at a time, and `filter` finds those that a ray
+//! by `step`, and `stream` does so for several rays at a time, in turns or as a `packet`. `lists` has
+//! all hits of many rays, as a `wave` where each goes its own way. `block` holds the triangles of a leaf, eight at a time, and `filter` finds those that a ray
 //! hits; `simd` says with which instructions, those of NEON in `neon`; `vector` is arithmetic on eight
 //! or sixteen numbers, `sift` says by it which triangles may be hit, and `located` where.
 //! `intersect` says for one triangle what a hit is:
@@ -58,6 +58,7 @@ mod grid;
 mod hits;
 mod intersect;
 mod leaves;
+mod lists;
 #[cfg(target_arch = "x86_64")]
 mod located;
 mod near;

@@ -1,9 +1,8 @@
-//! Several rays at a time: in packets, each a step in turn, or as a wave.
+//! Several rays at a time: in packets, or each a step in turn.
 //!
 //! A ray waits at almost every step, for memory and for the decision where to go: what it reads next
 //! depends on what it read last. Rays that go the same way wait together, as a packet. Where they
-//! go their own ways, the others are served while one waits. Where all hits are wanted, in whatever
-//! order, nothing needs to wait.
+//! go their own ways, the others are served while one waits.
 
 use super::hits::Counted;
 #[cfg(target_arch = "x86_64")]
@@ -16,8 +15,6 @@ use super::simd::{Plain, Simd};
 use super::stack::Stack;
 use super::traverse::{Trip, Visitor, traverse};
 use super::walk::Walk;
-#[cfg(target_arch = "x86_64")]
-use super::wave;
 use super::wide::Child;
 use crate::geometry::Ray;
 
@@ -35,13 +32,6 @@ pub(super) fn trace<V: Visitor>(
 ) {
     if go_together(trip, rays) {
         return in_packets(trip, rays, begin, end);
-    }
-    #[cfg(target_arch = "x86_64")]
-    if V::WANTS_ALL
-        && let Some(proof) = trip.simd.avx2()
-    {
-        // SAFETY: the processor has AVX2.
-        return unsafe { wave::trace_avx2(proof, trip, rays, begin, end) };
     }
     if !is_worth_turns(trip, rays) {
         return one_by_one(trip, rays, begin, end);
@@ -155,7 +145,7 @@ fn is_worth_turns(trip: &Trip, rays: &[Ray]) -> bool {
 }
 
 /// Whether most rays are beside the one before, all the way.
-fn go_together(trip: &Trip, rays: &[Ray]) -> bool {
+pub(super) fn go_together(trip: &Trip, rays: &[Ray]) -> bool {
     go_the_same_way(rays) && !start_apart(trip, rays)
 }
 

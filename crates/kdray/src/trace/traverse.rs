@@ -12,11 +12,6 @@ pub(super) trait Visitor {
     /// A hit of a leaf, at any `t`. Gives the `t` up to which there is more to see.
     fn hit(&mut self, hit: Hit) -> f32;
 
-    /// Whether all hits in the ray's interval are wanted, in whatever order: no hit makes the ray
-    /// shorter.
-    #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "there are no waves"))]
-    const WANTS_ALL: bool = false;
-
     /// Whether it is enough to know that a triangle is hit, and not where.
     const ASKS_WHETHER: bool = false;
 

@@ -46,7 +46,13 @@ impl Child {
     /// The first block of a leaf, or `None` for a wide node.
     #[inline(always)]
     pub(super) fn block(self) -> Option<usize> {
-        (self.0 & Self::LEAF != 0).then_some((self.0 & !(Self::LEAF | Self::ONE)) as usize)
+        (self.0 & Self::LEAF != 0).then_some(self.first_block())
+    }
+
+    /// The first block of a leaf.
+    #[inline(always)]
+    pub(super) fn first_block(self) -> usize {
+        (self.0 & !(Self::LEAF | Self::ONE)) as usize
     }
 
     /// Whether it is one block, and not all of a leaf from there on.
@@ -111,10 +117,13 @@ impl Layout {
     /// Asks for the memory of a wide node, or of the first block of a leaf.
     #[inline(always)]
     pub(super) fn prefetch(&self, child: Child) {
-        match child.block() {
-            None => self.prefetch_wide(child),
-            Some(first) => prefetch(self.blocks.as_ptr().wrapping_add(first)),
-        }
+        if child.block().is_none() { self.prefetch_wide(child) } else { self.prefetch_block(child) }
+    }
+
+    /// Asks for the memory of the first block of a leaf.
+    #[inline(always)]
+    pub(super) fn prefetch_block(&self, leaf: Child) {
+        prefetch(self.blocks.as_ptr().wrapping_add(leaf.first_block()));
     }
 
     /// Asks for the memory of a child that is a wide node.

@@ -1,12 +1,13 @@
 //! Rays.
 
-use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 use super::fill::Chunk;
+use super::stream::Found;
 use super::{Batch, BatchError, Lists};
 use crate::geometry::{Hit, Ray};
-use crate::trace::hits::{AllHits, Any, Closest, Crossings, FirstHits};
+use crate::trace::hits::{Any, Closest};
+use crate::trace::lists;
 use crate::trace::stream::trace;
 use crate::trace::traverse::Visitor;
 
@@ -27,8 +28,14 @@ impl Batch<'_> {
 
     /// Writes to `counts[i]` [how many triangles](crate::Tracer::count_hits) `rays[i]` hits.
     pub fn count_hits(&self, rays: &[Ray], counts: &mut [u32]) -> Result<(), BatchError> {
-        let begin = |index: usize, ray: &Ray| Crossings::new(ray, self.accept(index));
-        self.ask(rays, counts, begin, |it| it.count() as u32)
+        self.check_except(rays);
+        let ask = |chunk: &Chunk<Ray>, counts: &mut [u32]| {
+            counts.fill(0);
+            let accept = |place: usize| self.accept((chunk.index)(place));
+            let end = |place: usize, count| counts[place] = count as u32;
+            lists::count_hits(&self.tracer.trip, chunk.queries, accept, end);
+        };
+        self.fill_chunks(rays, counts, self.options.reorder, |ray| self.key_of_ray(ray), ask)
     }
 
     /// Gives `sink` the [first](crate::Tracer::first_hits) `limit` hits of each ray, in the order
@@ -40,10 +47,15 @@ impl Batch<'_> {
         limit: usize,
         sink: impl FnMut(Lists<Hit>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
-        let begin = |index: usize, ray: &Ray, list| {
-            (limit > 0).then(|| FirstHits::new(ray, limit, self.accept(index), list))
+        self.check_except(rays);
+        let ask = |first: usize, rays: &[Ray], found: &mut Found<Hit>| {
+            let accept = |index: usize| self.accept(first + index);
+            let mut room = std::mem::take(&mut found.room);
+            let end = |_: usize, hits: &[Hit]| found.add(hits);
+            lists::first_hits(&self.tracer.trip, rays, limit, accept, &mut room, end);
+            found.room = room;
         };
-        self.list(rays, begin, |it| it.hits, sink)
+        self.stream_groups(rays, ask, sink)
     }
 
     /// Gives `sink` [all hits](crate::Tracer::all_hits) of each ray, as [`Batch::first_hits`].
@@ -52,31 +64,7 @@ impl Batch<'_> {
         rays: &[Ray],
         sink: impl FnMut(Lists<Hit>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
-        let begin =
-            |index: usize, ray: &Ray, list| Some(AllHits::new(ray, self.accept(index), list));
-        self.list(rays, begin, AllHits::in_order, sink)
-    }
-
-    /// Gives `sink` the hits that `hits` makes of the visitor that `begin` gives for each ray and an
-    /// empty list, when it has seen what the ray comes to.
-    fn list<V: Visitor>(
-        &self,
-        rays: &[Ray],
-        begin: impl Fn(usize, &Ray, Vec<Hit>) -> Option<V> + Sync,
-        hits: impl Fn(V) -> Vec<Hit> + Sync,
-        sink: impl FnMut(Lists<Hit>) -> ControlFlow<()>,
-    ) -> Result<(), BatchError> {
-        self.check_except(rays);
-        let ask = |first: usize, rays: &[Ray], lists: &mut [Vec<Hit>]| {
-            let lists = RefCell::new(lists);
-            let begin = |index: usize, ray: &Ray| {
-                let list = std::mem::take(&mut lists.borrow_mut()[index]);
-                if ray.is_valid() { begin(first + index, ray, list) } else { None }
-            };
-            let end = |index: usize, it| lists.borrow_mut()[index] = hits(it);
-            trace(&self.tracer.trip, rays, begin, end);
-        };
-        self.stream_groups(rays, ask, sink)
+        self.first_hits(rays, usize::MAX, sink)
     }
 
     /// Writes to `answers[i]` what `answer` makes of the visitor that `begin` gives for `rays[i]`,

@@ -35,19 +35,19 @@ const ITEMS: usize = 1 << 16;
 const GROUP: usize = 64;
 
 /// What one thread has found, and not yet handed over.
-struct Found<T> {
+pub(super) struct Found<T> {
     first: usize,
     offsets: Vec<usize>,
     items: Vec<T>,
-    /// Those of a group of queries, one by one.
-    lists: Vec<Vec<T>>,
     group: usize,
+    /// For whoever makes lists of a group of queries one beside the other.
+    pub(super) room: Vec<Vec<T>>,
 }
 
 impl<T: Copy> Found<T> {
     fn new() -> Self {
-        let (offsets, items, lists) = (Vec::new(), Vec::new(), Vec::new());
-        Self { first: 0, offsets, items, lists, group: GROUP }
+        let (offsets, items, room) = (Vec::new(), Vec::new(), Vec::new());
+        Self { first: 0, offsets, items, group: GROUP, room }
     }
 
     fn lists(&self) -> Lists<'_, T> {
@@ -59,8 +59,15 @@ impl<T: Copy> Found<T> {
         self.offsets.len() - 1
     }
 
+    /// Adds the list of the next query.
+    #[inline]
+    pub(super) fn add(&mut self, list: &[T]) {
+        self.items.extend_from_slice(list);
+        self.offsets.push(self.items.len());
+    }
+
     /// Asks from `first` on, until all `queries` are answered or there are enough items.
-    fn ask<Q>(&mut self, first: usize, queries: &[Q], ask: impl Fn(usize, &[Q], &mut [Vec<T>])) {
+    fn ask<Q>(&mut self, first: usize, queries: &[Q], ask: impl Fn(usize, &[Q], &mut Self)) {
         self.first = first;
         self.items.clear();
         self.offsets.clear();
@@ -71,24 +78,17 @@ impl<T: Copy> Found<T> {
         }
     }
 
-    fn ask_group<Q>(&mut self, queries: &[Q], ask: impl Fn(usize, &[Q], &mut [Vec<T>])) {
-        if self.lists.len() < queries.len() {
-            self.lists.resize_with(queries.len(), Vec::new);
-        }
-        let before = self.items.len();
-        let lists = &mut self.lists[..queries.len()];
-        ask(self.first + self.offsets.len() - 1, queries, lists);
-        for list in lists {
-            self.items.append(list);
-            self.offsets.push(self.items.len());
-        }
-        match self.items.len() - before {
+    fn ask_group<Q>(&mut self, queries: &[Q], ask: impl Fn(usize, &[Q], &mut Self)) {
+        let (items, count) = (self.items.len(), self.count());
+        ask(self.first + count, queries, self);
+        assert_eq!(self.count() - count, queries.len(), "one list a query");
+        match self.items.len() - items {
             many if many > ITEMS / 2 => self.group = (self.group / 2).max(1),
             few if few < ITEMS / 8 => self.group = (2 * self.group).min(CHUNK),
             _ => {}
         }
         // Room that one long list took is not kept for all.
-        self.lists.iter_mut().for_each(|list| list.shrink_to(ITEMS / CHUNK));
+        self.room.iter_mut().for_each(|list| list.shrink_to(ITEMS / CHUNK));
     }
 }
 
@@ -100,18 +100,22 @@ impl Batch<'_> {
         ask: impl Fn(&Q, &mut Vec<T>) + Sync,
         sink: impl FnMut(Lists<T>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
-        let ask_each = |_: usize, queries: &[Q], lists: &mut [Vec<T>]| {
-            queries.iter().zip(lists).for_each(|(query, list)| ask(query, list));
+        let ask_each = |_: usize, queries: &[Q], found: &mut Found<T>| {
+            let mut list = found.room.pop().unwrap_or_default();
+            for query in queries {
+                ask(query, &mut list);
+                found.add(&list);
+            }
+            found.room.push(list);
         };
         self.stream_groups(queries, ask_each, sink)
     }
 
-    /// The same, where `ask(i, queries[i..i + n], lists)` fills the lists of `n` queries. The lists
-    /// that it gets are empty.
+    /// The same, where `ask(i, queries[i..i + n], found)` adds the lists of `n` queries.
     pub(super) fn stream_groups<Q: Sync, T: Copy + Send>(
         &self,
         queries: &[Q],
-        ask: impl Fn(usize, &[Q], &mut [Vec<T>]) + Sync,
+        ask: impl Fn(usize, &[Q], &mut Found<T>) + Sync,
         mut sink: impl FnMut(Lists<T>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
         let meter = Meter::new(self, queries.len());
@@ -149,7 +153,7 @@ fn hand_over<Q, T: Copy>(
     start: usize,
     queries: &[Q],
     meter: &Meter,
-    ask: impl Fn(usize, &[Q], &mut [Vec<T>]),
+    ask: impl Fn(usize, &[Q], &mut Found<T>),
     sink: &mut impl FnMut(Lists<T>) -> ControlFlow<()>,
 ) -> Result<ControlFlow<()>, BatchError> {
     let mut done = 0;

@@ -24,8 +24,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use rayon::prelude::*;
 
 use super::block::Block;
-use super::hits::AllHits;
-use super::stream::trace;
+use super::lists::first_hits;
 use super::traverse::Trip;
 use crate::geometry::{Aabb, Hit, Ray};
 use outline::odd_edges;
@@ -126,11 +125,9 @@ impl Grid {
                 Ray { t_min: f32::NEG_INFINITY, ..Ray::new(origin, direction) }
             };
             let rays: Vec<Ray> = (0..of_row).map(ray).collect();
-            let begin = |_: usize, ray: &Ray| {
-                ray.is_valid().then(|| AllHits::new(ray, |_| true, Vec::new()))
-            };
-            trace(trip, &rays, begin, |y, hits: AllHits<_>| {
-                self.fill_column([x, y], &hits.in_order())
+            let (all, mut room) = (|_: usize| |_: u32| true, Vec::new());
+            first_hits(trip, &rays, usize::MAX, all, &mut room, |y, hits| {
+                self.fill_column([x, y], hits);
             });
         });
     }

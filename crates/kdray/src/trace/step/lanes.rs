@@ -21,6 +21,30 @@ pub(in crate::trace) struct Lanes {
 }
 
 impl Lanes {
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(in crate::trace) fn new(ray: &Ray, reach: f32) -> Self {
+        let Axes { inverse, enter, leave } = Axes::new(ray, reach);
+        let axes = |v: __m128| {
+            [v, _mm_movehdup_ps(v), _mm_movehl_ps(v, v)].map(|axis| _mm256_broadcastss_ps(axis))
+        };
+        Self {
+            inverse: axes(inverse),
+            enter: axes(enter),
+            leave: axes(leave),
+            octant: _mm_movemask_ps(inverse) as usize & 7,
+        }
+    }
+}
+
+/// [`Slabs`](crate::trace::prepare::Slabs) with an axis a lane, and a number of no consequence.
+pub(in crate::trace) struct Axes {
+    pub(in crate::trace) inverse: __m128,
+    pub(in crate::trace) enter: __m128,
+    pub(in crate::trace) leave: __m128,
+}
+
+impl Axes {
     /// The arithmetic of [`Slabs::new`](crate::trace::prepare::Slabs::new), on all axes at once.
     #[inline]
     #[target_feature(enable = "avx2")]
@@ -44,15 +68,7 @@ impl Lanes {
         let inverse = _mm_div_ps(all(1.0), _mm_blendv_ps(direction, signed, small));
         let offset = _mm_mul_ps(origin, inverse);
         let thick = _mm_mul_ps(thickness, magnitude(inverse));
-        let axes = |v: __m128| {
-            [v, _mm_movehdup_ps(v), _mm_movehl_ps(v, v)].map(|axis| _mm256_broadcastss_ps(axis))
-        };
-        Self {
-            inverse: axes(inverse),
-            enter: axes(_mm_add_ps(offset, thick)),
-            leave: axes(_mm_sub_ps(offset, thick)),
-            octant: _mm_movemask_ps(inverse) as usize & 7,
-        }
+        Self { inverse, enter: _mm_add_ps(offset, thick), leave: _mm_sub_ps(offset, thick) }
     }
 }
 

@@ -8,7 +8,7 @@ use super::stack::Stack;
 use super::wide::{Child, Wide};
 #[cfg(target_arch = "x86_64")]
 pub(super) use lanes::{
-    Lanes, ROW, ROWS, far_to_near_avx2, nearest_avx2, nearest_avx512, places, push_avx2,
+    Axes, Lanes, ROW, ROWS, far_to_near_avx2, nearest_avx2, nearest_avx512, places, push_avx2,
     push_avx512,
 };
 

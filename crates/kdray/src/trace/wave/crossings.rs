@@ -2,6 +2,7 @@
 
 use std::arch::x86_64::*;
 
+use super::piles::{Kept, Piles};
 use crate::trace::block::{Block, LANES};
 use crate::trace::block_ray::BlockRay;
 use crate::trace::located::{Located, located, precisely_sheared};
@@ -19,11 +20,14 @@ pub(super) struct Crossing {
 /// Crossings that are waited for before they are looked at: their blocks are still in the nearest cache.
 pub(super) const CROSSINGS: usize = 32;
 
+/// Places of a column, a power of two: there is room for what the last block adds, and for eight.
+const ROOM: usize = 64;
+
 /// Crossings in two columns. Eight are written at a time, however many of them count.
 pub(super) struct Crossings {
     /// Ray and lane, of which there are eight.
-    rays: [u32; CROSSINGS + 2 * LANES],
-    blocks: [u32; CROSSINGS + 2 * LANES],
+    rays: [u32; ROOM],
+    blocks: [u32; ROOM],
     len: usize,
 }
 
@@ -64,6 +68,20 @@ impl Crossings {
     pub(super) fn get(&self, index: usize) -> Crossing {
         let (ray, block) = (self.rays[index] as usize, self.blocks[index] as usize);
         Crossing { ray: ray / LANES, block, lane: ray % LANES }
+    }
+
+    /// Leaves those out that are known already, without a jump.
+    #[inline]
+    #[target_feature(enable = "avx2")]
+    pub(super) fn leave_out_known<T: Kept>(&mut self, blocks: &[Block], piles: &mut Piles<T>) {
+        let mut kept = 0;
+        for index in 0..self.len.min(ROOM) {
+            let Crossing { ray, block, lane } = self.get(index);
+            let (from_rays, from_blocks) = (self.rays[index], self.blocks[index]);
+            (self.rays[kept % ROOM], self.blocks[kept % ROOM]) = (from_rays, from_blocks);
+            kept += usize::from(piles.is_new(ray, blocks[block].index(lane)));
+        }
+        self.len = kept;
     }
 }
 

@@ -7,22 +7,24 @@
 
 mod crossings;
 mod pairs;
+mod piles;
 mod ready;
 
 use std::arch::x86_64::*;
 
 use self::crossings::{Crossing, Crossings, located_four};
-use self::pairs::{Pair, Pairs};
+use self::pairs::Pairs;
+pub(super) use self::piles::Kept;
+use self::piles::Piles;
 use self::ready::{Ready, meet};
-use super::block::Block;
 use super::block_ray::BlockRay;
 use super::filter::unknown_hit;
 use super::located::Located;
 use super::sift::Sifted;
 use super::simd::HasAvx2;
-use super::traverse::{Trip, Visitor};
+use super::traverse::Trip;
 use super::vector::{Precise, lanes};
-use super::wide::{Child, Layout};
+use super::wide::Child;
 use crate::geometry::{Hit, Ray};
 
 /// Rays that are on their way together: what is known of them stays in the nearest cache.
@@ -35,152 +37,154 @@ const TOGETHER: usize = 64;
 /// Blocks that are looked at together.
 const BLOCKS: usize = 512;
 
-/// How many pairs ahead memory is asked for.
-const AHEAD: usize = 12;
-
-/// Walks all `rays` and shows their visitors all hits, in no order. Rays without a visitor stay away.
+/// Walks all `rays` and gives `end`, ray by ray, all that is hit of what `accept`, by the index of the
+/// ray, holds of: in order, and each triangle once.
 #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
-pub(super) fn trace_avx2<V: Visitor>(
+pub(super) fn trace_avx2<T: Kept, F: Fn(u32) -> bool>(
     _proof: HasAvx2,
     trip: &Trip,
     rays: &[Ray],
-    mut begin: impl FnMut(usize, &Ray) -> Option<V>,
-    mut end: impl FnMut(usize, V),
+    accept: impl Fn(usize) -> F,
+    mut end: impl FnMut(usize, &[T]),
 ) {
+    let most = rays.len().min(RAYS);
     let mut wave = Wave {
         trip,
-        nodes: Pairs::new(),
-        leaves: Pairs::new(),
+        accept: |ray, triangle| accept(ray)(triangle),
+        first: 0,
+        rays: &[],
+        ready: vec![Ready::default(); most],
+        prepared: vec![BlockRay::default(); most],
+        met: Pairs::default(),
+        nodes: Pairs::default(),
+        leaves: Pairs::default(),
         inside: Crossings::new(),
         crossed: Crossings::new(),
+        piles: Piles::new(),
     };
-    let mut visitors = Vec::with_capacity(RAYS);
     for (group, rays) in rays.chunks(RAYS).enumerate() {
-        let begun = rays.iter().enumerate().map(|(at, ray)| begin(group * RAYS + at, ray));
-        visitors.extend(begun);
-        wave.visit(rays, &mut visitors);
-        for (at, visitor) in visitors.drain(..).enumerate() {
-            if let Some(visitor) = visitor {
-                end(group * RAYS + at, visitor);
-            }
-        }
+        (wave.first, wave.rays) = (group * RAYS, rays);
+        wave.visit();
+        wave.piles.hand_over(rays.len(), |at, list| end(group * RAYS + at, list));
     }
 }
 
-struct Wave<'a> {
+struct Wave<'a, T, A> {
     trip: &'a Trip,
+    /// Whether a ray, by its index, sees a triangle.
+    accept: A,
+    /// The index of the first ray.
+    first: usize,
+    rays: &'a [Ray],
+    /// The rays for boxes, and for blocks.
+    ready: Vec<Ready>,
+    prepared: Vec<BlockRay>,
+    met: Pairs,
+    /// Those of them that are looked at next.
     nodes: Pairs,
     leaves: Pairs,
     /// Hits for certain, if it is enough to know that.
     inside: Crossings,
     /// What is crossed, and is to be located.
     crossed: Crossings,
+    piles: Piles<T>,
 }
 
-impl Wave<'_> {
+impl<T: Kept, A: Fn(usize, u32) -> bool> Wave<'_, T, A> {
     #[inline]
     #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
-    fn visit<V: Visitor>(&mut self, rays: &[Ray], visitors: &mut [Option<V>]) {
-        let ready: Vec<Ready> = rays.iter().map(|ray| Ready::new(ray, self.trip.reach)).collect();
-        // Made when the first block is reached: many rays reach none.
-        let mut prepared = [const { None }; RAYS];
-        self.nodes.reserve(rays.len());
-        for at in (0..rays.len()).filter(|at| visitors[*at].is_some()) {
-            self.nodes.add(Pair { ray: at as u32, child: Child(0) });
+    fn visit(&mut self) {
+        // For blocks too: which rays come to one nobody can foresee.
+        let places = self.ready.iter_mut().zip(&mut self.prepared);
+        for (ray, (ready, prepared)) in self.rays.iter().zip(places) {
+            (*ready, *prepared) = (Ready::new(ray, self.trip.reach), BlockRay::new(ray));
         }
-        let mut pairs = [Pair { ray: 0, child: Child(0) }; TOGETHER];
-        loop {
-            let count = self.nodes.take(&mut pairs);
-            self.step(&ready, &pairs[..count]);
-            if self.leaves.len >= BLOCKS || count == 0 {
-                self.test(rays, &mut prepared, visitors);
-            }
-            if count == 0 {
-                return;
+        let mut met = self.met.end(self.rays.len());
+        for (at, _) in self.rays.iter().enumerate().filter(|(_, ray)| ray.is_valid()) {
+            met.add(at as u32, Child(0));
+        }
+        let met = met.len;
+        self.met.keep(met);
+        while self.met.len() > 0 {
+            self.met.take(TOGETHER, &mut self.nodes, &mut self.leaves);
+            self.step();
+            if self.leaves.len() >= BLOCKS {
+                self.test();
             }
         }
+        self.test();
     }
 
     /// Steps down from nodes.
     #[inline]
     #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
-    fn step(&mut self, ready: &[Ready], pairs: &[Pair]) {
-        self.nodes.reserve(8 * pairs.len());
-        self.leaves.reserve(8 * pairs.len());
+    fn step(&mut self) {
         let layout = &self.trip.layout;
-        for pair in &pairs[..AHEAD.min(pairs.len())] {
-            layout.prefetch_wide(pair.child);
-        }
-        for (index, pair) in pairs.iter().enumerate() {
-            layout.prefetch_wide(pairs[(index + AHEAD).min(pairs.len() - 1)].child);
+        let mut met = self.met.end(8 * TOGETHER);
+        let (first, nodes) = self.nodes.iter(Child(0));
+        first.iter().for_each(|child| layout.prefetch_wide(*child));
+        for (ray, child, ahead) in nodes {
+            layout.prefetch_wide(ahead);
             // SAFETY: rays and children of pairs are those of the wave and of the layout.
             let (ready, wide) = unsafe {
-                let wide = layout.wides.get_unchecked(pair.child.0 as usize);
-                (ready.get_unchecked(pair.ray as usize), wide)
+                let wide = layout.wides.get_unchecked(child.0 as usize);
+                (self.ready.get_unchecked(ray as usize), wide)
             };
-            let met = meet(wide, ready);
+            let mask = meet(wide, ready);
             // SAFETY: eight lanes, aligned like the node.
             let children = unsafe { _mm256_load_si256(wide.children.as_ptr().cast()) };
-            // Leaves have the sign bit.
-            let leaves = _mm256_movemask_ps(_mm256_castsi256_ps(children)) as u32;
-            self.nodes.push(pair.ray, children, met & !leaves);
-            self.leaves.push(pair.ray, children, met & leaves);
+            met.push_for(_mm256_set1_epi32(ray as i32), children, mask);
         }
+        let met = met.len;
+        self.met.keep(met);
+        self.nodes.clear();
     }
 
     /// Tests the blocks that were met.
     #[inline]
     #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
-    fn test<V: Visitor>(
-        &mut self,
-        rays: &[Ray],
-        prepared: &mut [Option<BlockRay>],
-        visitors: &mut [Option<V>],
-    ) {
-        let Trip { layout: Layout { blocks, .. }, .. } = self.trip;
-        for index in 0..self.leaves.len {
-            let Pair { ray: at, child } = self.leaves.get(index);
-            let ahead = self.leaves.get((index + AHEAD).min(self.leaves.len - 1));
-            self.trip.layout.prefetch(ahead.child);
-            let ray = &rays[at as usize];
-            for place in child.block().unwrap_or(0).. {
-                let block = &blocks[place];
-                let ready = prepared[at as usize].get_or_insert_with(|| BlockRay::new(ray));
-                let Sifted { maybe, surely, inside } =
-                    block.crossed_avx2::<V>(ready, [ray.t_min, ray.t_max]);
-                if V::ASKS_WHETHER {
+    fn test(&mut self) {
+        let layout = &self.trip.layout;
+        let mut leaves = std::mem::take(&mut self.leaves);
+        let (first, pairs) = leaves.iter(Child::leaf(0));
+        first.iter().for_each(|child| layout.prefetch_block(*child));
+        for (at, child, ahead) in pairs {
+            layout.prefetch_block(ahead);
+            let Ray { t_min, t_max, .. } = self.rays[at as usize];
+            for place in child.first_block().. {
+                let (ray, block) = (&self.prepared[at as usize], &layout.blocks[place]);
+                let Sifted { maybe, surely, inside } = block.crossed_avx2::<T>(ray, [t_min, t_max]);
+                if T::ASKS_WHETHER {
                     self.inside.push(at, place as u32, inside);
                 }
                 self.crossed.push(at, place as u32, maybe & surely & !inside);
                 if maybe & !surely != 0 {
-                    show_unsure(block, maybe & !surely, ray, &mut visitors[at as usize]);
+                    self.keep_unsure(at as usize, place, maybe & !surely);
                 }
-                if self.inside.is_full() || self.crossed.is_full() {
-                    self.show(rays, prepared, visitors);
+                if self.crossed.is_full() || T::ASKS_WHETHER && self.inside.is_full() {
+                    self.locate();
                 }
                 if child.is_one() || block.is_last() {
                     break;
                 }
             }
         }
-        self.leaves.len = 0;
-        self.show(rays, prepared, visitors);
+        leaves.clear();
+        self.leaves = leaves;
+        self.locate();
     }
 
-    /// Shows the hits among crossings.
-    #[inline]
+    /// Keeps the hits among crossings.
     #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
-    fn show<V: Visitor>(
-        &mut self,
-        rays: &[Ray],
-        prepared: &[Option<BlockRay>],
-        visitors: &mut [Option<V>],
-    ) {
-        let Trip { layout: Layout { blocks, .. }, .. } = self.trip;
+    fn locate(&mut self) {
+        let blocks = &self.trip.layout.blocks;
+        self.inside.leave_out_known(blocks, &mut self.piles);
+        self.crossed.leave_out_known(blocks, &mut self.piles);
         for index in 0..self.inside.len() {
             let Crossing { ray, block, lane } = self.inside.get(index);
-            if let Some(visitor) = &mut visitors[ray] {
-                visitor.inside(blocks[block].index(lane));
+            let triangle = blocks[block].index(lane);
+            if (self.accept)(self.first + ray, triangle) {
+                self.piles.add(ray, T::of(&Hit { t: 0.0, triangle, u: 0.0, v: 0.0 }));
             }
         }
         self.inside.clear();
@@ -188,40 +192,42 @@ impl Wave<'_> {
         for first in (0..count).step_by(4) {
             // The last ones are fewer: then one of them is there more than once.
             let four = [0, 1, 2, 3].map(|at| self.crossed.get((first + at).min(count - 1)));
-            let [Some(a), Some(b), Some(c), Some(d)] =
-                [0, 1, 2, 3].map(|at| &prepared[four[at].ray])
-            else {
-                continue;
-            };
-            let at = |ray, at: usize| (ray, &blocks[four[at].block], four[at].lane);
-            let Located { known, t, u, v } = located_four([at(a, 0), at(b, 1), at(c, 2), at(d, 3)]);
+            let Located { known, t, u, v } =
+                located_four(four.map(|Crossing { ray, block, lane }| {
+                    (&self.prepared[ray], &blocks[block], lane)
+                }));
             let [t, u, v] = [t.rounded(), u.rounded(), v.rounded()];
-            for (place, Crossing { ray, block, lane }) in
-                four[..(count - first).min(4)].iter().enumerate()
-            {
-                let Some(visitor) = &mut visitors[*ray] else { continue };
-                let (block, triangle) = (&blocks[*block], blocks[*block].index(*lane));
+            for (place, crossing) in four[..(count - first).min(4)].iter().enumerate() {
+                let Crossing { ray, block, lane } = *crossing;
                 if known >> place & 1 == 1 {
-                    if !visitor.knows(triangle) {
-                        visitor.hit(Hit { t: t[place], triangle, u: u[place], v: v[place] });
-                    }
-                } else if let Some(hit) = unknown_hit(block, *lane, true, &rays[*ray]) {
-                    visitor.hit(hit);
+                    let triangle = blocks[block].index(lane);
+                    self.keep(ray, &Hit { t: t[place], triangle, u: u[place], v: v[place] });
+                } else if let Some(hit) = unknown_hit(&blocks[block], lane, true, &self.rays[ray]) {
+                    self.keep(ray, &hit);
                 }
             }
         }
         self.crossed.clear();
     }
-}
 
-/// Shows what is hit of triangles that a ray may cross, a bit each.
-#[cold]
-#[inline(never)]
-fn show_unsure<V: Visitor>(block: &Block, mask: u32, ray: &Ray, visitor: &mut Option<V>) {
-    let Some(visitor) = visitor else { return };
-    for lane in lanes(mask) {
-        if let Some(hit) = unknown_hit(block, lane, false, ray) {
-            visitor.hit(hit);
+    /// Keeps what is hit of triangles of a block that a ray may cross, a bit each.
+    #[cold]
+    #[inline(never)]
+    fn keep_unsure(&mut self, ray: usize, block: usize, mask: u32) {
+        let block = &self.trip.layout.blocks[block];
+        for lane in lanes(mask) {
+            if let Some(hit) = unknown_hit(block, lane, false, &self.rays[ray]) {
+                self.keep(ray, &hit);
+            }
+        }
+    }
+
+    /// Keeps a hit that is in the ray's interval.
+    #[inline(always)]
+    fn keep(&mut self, ray: usize, hit: &Hit) {
+        let Ray { t_min, t_max, .. } = self.rays[ray];
+        if t_min <= hit.t && hit.t <= t_max && (self.accept)(self.first + ray, hit.triangle) {
+            self.piles.add(ray, T::of(hit));
         }
     }
 }
@@ -230,7 +236,7 @@ fn show_unsure<V: Visitor>(block: &Block, mask: u32, ray: &Ray, visitor: &mut Op
 mod tests {
     use super::*;
     use crate::geometry::Mesh;
-    use crate::trace::hits::{AllHits, Crossings, FirstHits};
+    use crate::trace::hits::FirstHits;
     use crate::trace::noise::noise;
     use crate::trace::prepare::reach;
     use crate::trace::simd::Best;
@@ -273,19 +279,15 @@ mod tests {
         let expected: Vec<_> = rays.iter().map(one_by_one).collect();
         assert!(expected.iter().map(Vec::len).max() > Some(1000), "some meet the thousand");
         let mut hits = vec![Vec::new(); rays.len()];
-        let begin = |index: usize, ray: &Ray| {
-            (!index.is_multiple_of(7)).then(|| AllHits::new(ray, |_| true, Vec::new()))
-        };
+        let all = |_: usize| |_: u32| true;
         // SAFETY: the processor has AVX2.
-        unsafe { trace_avx2(proof, &trip, &rays, begin, |at, it| hits[at] = it.in_order()) };
+        unsafe { trace_avx2(proof, &trip, &rays, all, |at, it: &[Hit]| hits[at] = it.to_vec()) };
         let mut counts = vec![0; rays.len()];
-        let begin = |_: usize, ray: &Ray| Some(Crossings::new(ray, |_| true));
         // SAFETY: as above.
-        unsafe { trace_avx2(proof, &trip, &rays, begin, |at, it| counts[at] = it.count()) };
+        unsafe { trace_avx2(proof, &trip, &rays, all, |at, it: &[u32]| counts[at] = it.len()) };
         for (at, expected) in expected.iter().enumerate() {
             assert_eq!(counts[at], expected.len(), "{:?}", rays[at]);
-            let stays_away = at.is_multiple_of(7);
-            assert_eq!(hits[at], if stays_away { vec![] } else { expected.clone() }, "{at}");
+            assert_eq!(hits[at], *expected, "{at}");
         }
     }
 }

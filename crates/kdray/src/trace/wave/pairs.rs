@@ -1,31 +1,33 @@
 //! Pairs of a ray and what it meets.
 
 use std::arch::x86_64::*;
+use std::marker::PhantomData;
 
 use crate::trace::step::places;
 use crate::trace::wide::Child;
 
-/// A ray, by its place, and a node or a block that it meets.
-#[derive(Clone, Copy)]
-pub(super) struct Pair {
-    pub(super) ray: u32,
-    pub(super) child: Child,
-}
+/// How many pairs ahead memory is asked for.
+const AHEAD: usize = 12;
 
-/// Pairs in two columns. Eight are written at a time, however many of them count.
+/// Pairs of a ray, by its place, and a node or a leaf that it meets, in two columns.
+#[derive(Default)]
 pub(super) struct Pairs {
     rays: Vec<u32>,
     children: Vec<Child>,
-    pub(super) len: usize,
+    len: usize,
 }
 
 impl Pairs {
-    pub(super) fn new() -> Self {
-        Self { rays: Vec::new(), children: Vec::new(), len: 0 }
+    pub(super) fn len(&self) -> usize {
+        self.len
     }
 
-    /// Makes room for so many pairs more, and for eight.
-    pub(super) fn reserve(&mut self, more: usize) {
+    pub(super) fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Makes room for so many pairs more; and for eight, as many as are read or written at a time.
+    fn make_room(&mut self, more: usize) {
         let len = self.len + more + 8;
         if self.rays.len() < len {
             self.rays.resize(2 * len, 0);
@@ -33,38 +35,98 @@ impl Pairs {
         }
     }
 
-    /// Adds those of eight children whose bit is set.
-    #[inline]
-    #[target_feature(enable = "avx2,popcnt")]
-    pub(super) fn push(&mut self, ray: u32, children: __m256i, mask: u32) {
-        debug_assert!(self.len + 8 <= self.rays.len(), "there is room");
-        let children = _mm256_permutevar8x32_epi32(children, places(mask));
-        // SAFETY: there is room for eight.
-        unsafe {
-            let rays = self.rays.as_mut_ptr().add(self.len);
-            _mm256_storeu_si256(rays.cast(), _mm256_set1_epi32(ray as i32));
-            _mm256_storeu_si256(self.children.as_mut_ptr().add(self.len).cast(), children);
-        }
-        self.len += mask.count_ones() as usize;
+    /// Where up to so many pairs are added; [`Pairs::keep`] says how many were.
+    pub(super) fn end(&mut self, room: usize) -> End<'_> {
+        self.make_room(room);
+        let (rays, children) = (self.rays.as_mut_ptr(), self.children.as_mut_ptr());
+        End { rays, children, len: self.len, full: self.len + room, of: PhantomData }
     }
 
-    /// Adds one. There is room.
-    pub(super) fn add(&mut self, pair: Pair) {
-        (self.rays[self.len], self.children[self.len]) = (pair.ray, pair.child);
+    /// Keeps the pairs so far, of those that were written.
+    pub(super) fn keep(&mut self, len: usize) {
+        assert!(len <= self.rays.len(), "they were written");
+        self.len = len;
+    }
+
+    /// Takes the last pairs, at most so many, and adds them to those of their kind.
+    #[inline]
+    #[target_feature(enable = "avx2,popcnt")]
+    pub(super) fn take(&mut self, most: usize, to_nodes: &mut Self, to_leaves: &mut Self) {
+        self.make_room(0);
+        let first = self.len - self.len.min(most);
+        let (mut nodes, mut leaves) = (to_nodes.end(most), to_leaves.end(most));
+        for at in (first..self.len).step_by(8) {
+            // SAFETY: there is room for eight behind the last.
+            let [rays, children] = unsafe {
+                let children = self.children.as_ptr().add(at);
+                [self.rays.as_ptr().add(at).cast(), children.cast()]
+                    .map(|eight| _mm256_loadu_si256(eight))
+            };
+            let present = (1 << (self.len - at).min(8)) - 1;
+            // They have the sign bit.
+            let are_leaves = _mm256_movemask_ps(_mm256_castsi256_ps(children)) as u32;
+            nodes.push(rays, children, present & !are_leaves);
+            leaves.push(rays, children, present & are_leaves);
+        }
+        let (nodes, leaves) = (nodes.len, leaves.len);
+        to_nodes.keep(nodes);
+        to_leaves.keep(leaves);
+        self.len = first;
+    }
+
+    /// The children for whose memory is to be asked before all, and rays and children with the child for
+    /// whose memory is to be asked there: `behind` the last ones.
+    #[inline(always)]
+    pub(super) fn iter(
+        &mut self,
+        behind: Child,
+    ) -> (&[Child], impl Iterator<Item = (u32, Child, Child)>) {
+        self.make_room(AHEAD);
+        self.children[self.len..][..AHEAD].fill(behind);
+        let (first, ahead) = self.children.split_at(AHEAD);
+        let children = self.children.iter().zip(ahead);
+        let pairs = self.rays[..self.len].iter().zip(children);
+        (first, pairs.map(|(ray, (child, ahead))| (*ray, *child, *ahead)))
+    }
+}
+
+/// Where pairs are added to [`Pairs`]. There is always room for them.
+pub(super) struct End<'a> {
+    rays: *mut u32,
+    children: *mut Child,
+    pub(super) len: usize,
+    full: usize,
+    of: PhantomData<&'a mut Pairs>,
+}
+
+impl End<'_> {
+    /// Adds one.
+    #[inline(always)]
+    pub(super) fn add(&mut self, ray: u32, child: Child) {
+        debug_assert!(self.len < self.full, "there is room");
+        // SAFETY: there is room for eight.
+        unsafe { (*self.rays.add(self.len), *self.children.add(self.len)) = (ray, child) };
         self.len += 1;
     }
 
-    pub(super) fn get(&self, index: usize) -> Pair {
-        Pair { ray: self.rays[index], child: self.children[index] }
+    /// Adds those of eight whose bit is set.
+    #[inline]
+    #[target_feature(enable = "avx2,popcnt")]
+    fn push(&mut self, rays: __m256i, children: __m256i, mask: u32) {
+        self.push_for(_mm256_permutevar8x32_epi32(rays, places(mask)), children, mask);
     }
 
-    /// Takes the last pairs, at most so many.
-    pub(super) fn take(&mut self, into: &mut [Pair]) -> usize {
-        let count = self.len.min(into.len());
-        self.len -= count;
-        for (index, pair) in into[..count].iter_mut().enumerate() {
-            *pair = self.get(self.len + index);
+    /// The same for a ray that is in every lane.
+    #[inline]
+    #[target_feature(enable = "avx2,popcnt")]
+    pub(super) fn push_for(&mut self, ray: __m256i, children: __m256i, mask: u32) {
+        debug_assert!(self.len + mask.count_ones() as usize <= self.full, "there is room");
+        let children = _mm256_permutevar8x32_epi32(children, places(mask));
+        // SAFETY: there is room for eight.
+        unsafe {
+            _mm256_storeu_si256(self.rays.add(self.len).cast(), ray);
+            _mm256_storeu_si256(self.children.add(self.len).cast(), children);
         }
-        count
+        self.len += mask.count_ones() as usize;
     }
 }

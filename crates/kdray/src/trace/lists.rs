@@ -1,0 +1,70 @@
+//! Lists of hits of many rays, and how many hits there are.
+
+use super::hits::{Crossings, FirstHits};
+#[cfg(target_arch = "x86_64")]
+use super::simd::HasAvx2;
+#[cfg(target_arch = "x86_64")]
+use super::stream::go_together;
+use super::stream::trace;
+use super::traverse::Trip;
+#[cfg(target_arch = "x86_64")]
+use super::wave;
+use crate::geometry::{Hit, Ray};
+
+/// Gives `end` the first `limit` hits of each ray that it sees, in the order of the rays: those of which
+/// `accept`, by the index of the ray, holds. `room` is used and left for the next time.
+pub(super) fn first_hits<F: Fn(u32) -> bool>(
+    trip: &Trip,
+    rays: &[Ray],
+    limit: usize,
+    accept: impl Fn(usize) -> F,
+    room: &mut Vec<Vec<Hit>>,
+    mut end: impl FnMut(usize, &[Hit]),
+) {
+    #[cfg(target_arch = "x86_64")]
+    if limit == usize::MAX
+        && let Some(proof) = as_wave(trip, rays)
+    {
+        // SAFETY: the processor has AVX2.
+        return unsafe { wave::trace_avx2(proof, trip, rays, accept, end) };
+    }
+    if room.len() < rays.len() {
+        room.resize_with(rays.len(), Vec::new);
+    }
+    let lists = &mut room[..rays.len()];
+    let taken = |list: &mut Vec<Hit>| {
+        list.clear();
+        std::mem::take(list)
+    };
+    let mut waiting: Vec<Vec<Hit>> = lists.iter_mut().map(taken).collect();
+    let begin = |index: usize, ray: &Ray| {
+        let list = std::mem::take(&mut waiting[index]);
+        (limit > 0 && ray.is_valid()).then(|| FirstHits::new(ray, limit, accept(index), list))
+    };
+    trace(trip, rays, begin, |index, first| lists[index] = first.hits);
+    lists.iter().enumerate().for_each(|(index, list)| end(index, list));
+}
+
+/// Gives `end` how many triangles each ray hits of those that it sees; not of rays that can hit nothing.
+pub(super) fn count_hits<F: Fn(u32) -> bool>(
+    trip: &Trip,
+    rays: &[Ray],
+    accept: impl Fn(usize) -> F,
+    mut end: impl FnMut(usize, usize),
+) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(proof) = as_wave(trip, rays) {
+        let end = |index: usize, triangles: &[u32]| end(index, triangles.len());
+        // SAFETY: the processor has AVX2.
+        return unsafe { wave::trace_avx2(proof, trip, rays, accept, end) };
+    }
+    let begin =
+        |index: usize, ray: &Ray| ray.is_valid().then(|| Crossings::new(ray, accept(index)));
+    trace(trip, rays, begin, |index, crossings| end(index, crossings.count()));
+}
+
+/// Says so if it is best that everything along these rays is found as a wave.
+#[cfg(target_arch = "x86_64")]
+fn as_wave(trip: &Trip, rays: &[Ray]) -> Option<HasAvx2> {
+    if go_together(trip, rays) { None } else { trip.simd.avx2() }
+}
