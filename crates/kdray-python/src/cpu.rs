@@ -83,6 +83,7 @@ impl Asked<'_, '_> {
         let parts = offsets[1..].par_chunks_mut(size).zip(found.par_iter_mut());
         // Without a limit rays need not go from front to back.
         let is_limited = limit < self.scene.tree.triangle_count();
+        let limit = if is_limited { limit } else { usize::MAX };
         let list = |(part, (counts, found)): (usize, (&mut [i64], &mut Vec<Hit>))| {
             let range = self.range(size, part);
             let rays: Vec<Ray> = range.clone().map(|index| self.rays.get(index)).collect();
@@ -95,11 +96,7 @@ impl Asked<'_, '_> {
                 found.extend_from_slice(lists.items);
                 ControlFlow::Continue(())
             };
-            if is_limited {
-                batch.first_hits(&rays, limit, take)
-            } else {
-                batch.all_hits(&rays, take)
-            }
+            batch.first_hits(&rays, limit, take)
         };
         parts.enumerate().try_for_each(list).map_err(|error: BatchError| error::value(error))?;
         let mut end = 0;
