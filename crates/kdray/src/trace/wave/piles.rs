@@ -108,6 +108,7 @@ impl<T: Kept> Piles<T> {
             // Where its list starts, and, when all is there, where it ends.
             (*count, next) = (next, next + *count);
         }
+        // So many places; what is in them is written again.
         sorted.clear();
         sorted.extend(found.iter().map(|(_, hit)| *hit));
         for (ray, hit) in found.drain(..) {
