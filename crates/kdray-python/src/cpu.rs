@@ -81,9 +81,6 @@ impl Asked<'_, '_> {
         let mut offsets: Vec<i64> = zeros(self.rays.len() + 1)?;
         let mut found = vec![Vec::new(); self.rays.len().div_ceil(size)];
         let parts = offsets[1..].par_chunks_mut(size).zip(found.par_iter_mut());
-        // Without a limit rays need not go from front to back.
-        let is_limited = limit < self.scene.tree.triangle_count();
-        let limit = if is_limited { limit } else { usize::MAX };
         let list = |(part, (counts, found)): (usize, (&mut [i64], &mut Vec<Hit>))| {
             let range = self.range(size, part);
             let rays: Vec<Ray> = range.clone().map(|index| self.rays.get(index)).collect();

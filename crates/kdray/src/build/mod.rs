@@ -22,8 +22,9 @@ pub use options::{BuildOptions, BuildReport, Builder, MAX_DEPTH};
 // What a builder on another device shares with these, to the last bit; not a stable interface.
 #[doc(hidden)]
 pub use {
+    crate::geometry::ordered::{ordered, position_of},
     cost::NodeCost,
-    exact::{Below, Crown, ordered, position_of},
+    exact::{Below, Crown},
     options::Limits,
 };
 

@@ -7,6 +7,7 @@ mod frame;
 mod mesh;
 mod mesh_file;
 pub(crate) mod nearest;
+pub(crate) mod ordered;
 pub(crate) mod overlap;
 mod ray;
 pub(crate) mod vector;

@@ -1,5 +1,7 @@
 //! Lists of hits of many rays, and how many hits there are.
 
+use std::cell::Cell;
+
 use super::hits::{Crossings, FirstHits};
 #[cfg(target_arch = "x86_64")]
 use super::simd::HasAvx2;
@@ -12,7 +14,8 @@ use super::wave;
 use crate::geometry::{Hit, Ray};
 
 /// Gives `end` the first `limit` hits of each ray that it sees, in the order of the rays: those of which
-/// `accept`, by the index of the ray, holds. `room` is used and left for the next time.
+/// `accept`, by the index of the ray, holds. Without a limit it is `usize::MAX`. `room` is used and left
+/// for the next time.
 pub(super) fn first_hits<F: Fn(u32) -> bool>(
     trip: &Trip,
     rays: &[Ray],
@@ -31,18 +34,14 @@ pub(super) fn first_hits<F: Fn(u32) -> bool>(
     if room.len() < rays.len() {
         room.resize_with(rays.len(), Vec::new);
     }
-    let lists = &mut room[..rays.len()];
-    let taken = |list: &mut Vec<Hit>| {
-        list.clear();
-        std::mem::take(list)
-    };
-    let mut waiting: Vec<Vec<Hit>> = lists.iter_mut().map(taken).collect();
+    let lists = Cell::from_mut(&mut room[..rays.len()]).as_slice_of_cells();
     let begin = |index: usize, ray: &Ray| {
-        let list = std::mem::take(&mut waiting[index]);
+        let mut list = lists[index].take();
+        list.clear();
         (limit > 0 && ray.is_valid()).then(|| FirstHits::new(ray, limit, accept(index), list))
     };
-    trace(trip, rays, begin, |index, first| lists[index] = first.hits);
-    lists.iter().enumerate().for_each(|(index, list)| end(index, list));
+    trace(trip, rays, begin, |index, first| lists[index].set(first.hits));
+    room[..rays.len()].iter().enumerate().for_each(|(index, list)| end(index, list));
 }
 
 /// Gives `end` how many triangles each ray hits of those that it sees; not of rays that can hit nothing.

@@ -33,9 +33,10 @@
 //! `collapse` lays the tree out in the nodes of eight boxes of `wide`; `prepare` makes of a ray
 //! what traversal needs; `traverse` visits the leaves along it from front to back, `walk`ing `step`
 //! by `step`, and `stream` does so for several rays at a time, in turns or as a `packet`. `lists` has
-//! all hits of many rays, as a `wave` where each goes its own way. `block` holds the triangles of a leaf, eight at a time, and `filter` finds those that a ray
-//! hits; `simd` says with which instructions, those of NEON in `neon`; `vector` is arithmetic on eight
-//! or sixteen numbers, `sift` says by it which triangles may be hit, and `located` where.
+//! all hits of many rays, as a `wave` where each goes its own way. `block` holds the triangles of a
+//! leaf, eight at a time, and `filter` finds those that a ray hits; `simd` says with which
+//! instructions, those of NEON in `neon`; `vector` is arithmetic on eight or sixteen numbers, `sift`
+//! says by it which triangles may be hit, and `located` where.
 //! `intersect` says for one triangle what a hit is:
 //! it is the definition that everything else is tested against. `hits` keeps what the queries want
 //! of the hits. `leaves` is the same visit for whoever asks, in strict order. `near` visits the

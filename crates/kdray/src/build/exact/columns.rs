@@ -1,6 +1,5 @@
 //! A few references, column by column.
 
-use super::event::position_of;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, detect};
 use super::lanes::{LANES, Lanes, Plain};
@@ -9,6 +8,7 @@ use super::set::Set;
 use super::sweep::Candidate;
 use crate::build::NodeCost;
 use crate::geometry::Aabb;
+use crate::geometry::ordered::position_of;
 
 /// The most references that columns hold; half as many more would be counted in twice the time.
 pub(super) const MOST: usize = 64;

@@ -1,6 +1,7 @@
 //! Events: where references start, lie flat and end along an axis \[WH06].
 
 use crate::geometry::Aabb;
+use crate::geometry::ordered::ordered;
 
 /// What an event says of its reference. At one position events come in this order.
 ///
@@ -87,37 +88,12 @@ pub(super) fn events_of(bounds: &Aabb, axis: usize, reference: u32) -> [Event; 2
     [Event::new(lower, kinds[0], reference), Event::new(upper, kinds[1], reference)]
 }
 
-/// Bits that compare, as an unsigned integer, like the number.
-#[must_use]
-#[inline(always)]
-pub fn ordered(position: f32) -> u32 {
-    let bits = position.to_bits();
-    bits ^ (((bits as i32 >> 31) as u32) | 0x8000_0000)
-}
-
-/// The number of which `ordered` gave these bits.
-#[must_use]
-#[inline(always)]
-pub fn position_of(ordered: u32) -> f32 {
-    f32::from_bits(ordered ^ (!((ordered as i32 >> 31) as u32) | 0x8000_0000))
-}
-
 const _: () = assert!(size_of::<Event>() == 8);
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ordered_bits_compare_like_numbers() {
-        let numbers = [f32::MIN, -1.5, -1e-40, 0.0, 1e-40, 1.0, f32::MAX];
-        for pair in numbers.windows(2) {
-            assert!(ordered(pair[0]) < ordered(pair[1]), "{pair:?}");
-        }
-        for number in numbers {
-            assert_eq!(position_of(ordered(number)).to_bits(), number.to_bits());
-        }
-    }
+    use crate::geometry::ordered::position_of;
 
     #[test]
     fn an_event_keeps_what_it_was_made_of() {

@@ -28,7 +28,6 @@ use super::options::Limits;
 use super::{BuildError, Growth, NodeCost};
 use crate::geometry::{Aabb, Mesh};
 pub use crown::{Below, Crown};
-pub use event::{ordered, position_of};
 use large::{Maker, Whole};
 use small::Small;
 

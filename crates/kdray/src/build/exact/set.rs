@@ -1,8 +1,9 @@
 //! What the builder knows of a node: its references, and their events in order.
 
-use super::event::{Event, events_of, position_of};
+use super::event::{Event, events_of};
 use super::partition::SPARE;
 use super::sort::sort;
+use crate::geometry::ordered::position_of;
 use crate::geometry::{Aabb, Mesh};
 use crate::memory::{with_huge_pages, zeros_in_huge_pages};
 

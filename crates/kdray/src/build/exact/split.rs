@@ -5,13 +5,14 @@
 //! into the lists once these are split (\[WH06], section 4.3).
 
 use super::Context;
-use super::event::{Event, Kind, events_of, ordered};
+use super::event::{Event, Kind, events_of};
 use super::partition::{TO_NONE, TO_RIGHT, merge, partition};
 use super::set::Set;
 use super::sweep::Candidate;
 use crate::build::NodeCost;
 use crate::build::plane::{Plane, Side};
 use crate::geometry::Aabb;
+use crate::geometry::ordered::ordered;
 
 /// The children that a reference reaches, as the bits of a byte.
 const LEFT: u8 = 1;

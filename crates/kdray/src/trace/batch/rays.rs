@@ -48,6 +48,8 @@ impl Batch<'_> {
         sink: impl FnMut(Lists<Hit>) -> ControlFlow<()>,
     ) -> Result<(), BatchError> {
         self.check_except(rays);
+        // No ray hits more triangles than there are: without a limit none needs to go from front to back.
+        let limit = if limit < self.tracer.triangle_count { limit } else { usize::MAX };
         let ask = |first: usize, rays: &[Ray], found: &mut Found<Hit>| {
             let accept = |index: usize| self.accept(first + index);
             let mut room = std::mem::take(&mut found.room);

@@ -4,6 +4,7 @@
 //! blocks are small: a ray that meets the leaf passes by most of them.
 
 use crate::geometry::Aabb;
+use crate::geometry::ordered::ordered;
 use crate::trace::block::LANES;
 
 /// Leaves of more triangles keep their order. No wide node holds as many blocks.
@@ -77,8 +78,7 @@ fn cut(parts: &[Part], order: &[u64]) -> (usize, f32) {
 /// Places of parts in the order of their middles, below keys that are ordered in the same way.
 fn sort(parts: &[Part], axis: usize, order: &mut [u64]) {
     for (place, (part, keyed)) in parts.iter().zip(&mut *order).enumerate() {
-        let bits = (part.bounds.lower[axis] + part.bounds.upper[axis]).to_bits();
-        let key = bits ^ if bits >> 31 == 1 { u32::MAX } else { 1 << 31 };
+        let key = ordered(part.bounds.lower[axis] + part.bounds.upper[axis]);
         *keyed = u64::from(key) << 32 | place as u64;
     }
     order.sort_unstable();

@@ -20,8 +20,10 @@ pub(super) struct Crossing {
 /// Crossings that are waited for before they are looked at: their blocks are still in the nearest cache.
 pub(super) const CROSSINGS: usize = 32;
 
-/// Places of a column, a power of two: there is room for what the last block adds, and for eight.
+/// Places of a column: a power of two, so that no place needs a check.
 const ROOM: usize = 64;
+
+const _: () = assert!(CROSSINGS + LANES <= ROOM, "the last block adds eight at most");
 
 /// Crossings in two columns. Eight are written at a time, however many of them count.
 pub(super) struct Crossings {

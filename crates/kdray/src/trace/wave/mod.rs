@@ -34,8 +34,8 @@ const RAYS: usize = 128;
 /// nodes on every level.
 const TOGETHER: usize = 64;
 
-/// Blocks that are looked at together.
-const BLOCKS: usize = 512;
+/// Leaves that are waited for before their blocks are tested.
+const LEAVES: usize = 512;
 
 /// Walks all `rays` and gives `end`, ray by ray, all that is hit of what `accept`, by the index of the
 /// ray, holds of: in order, and each triangle once.
@@ -79,8 +79,9 @@ struct Wave<'a, T, A> {
     /// The rays for boxes, and for blocks.
     ready: Vec<Ready>,
     prepared: Vec<BlockRay>,
+    /// What rays have met.
     met: Pairs,
-    /// Those of them that are looked at next.
+    /// Nodes of it, from which the wave steps down next, and leaves.
     nodes: Pairs,
     leaves: Pairs,
     /// Hits for certain, if it is enough to know that.
@@ -103,12 +104,11 @@ impl<T: Kept, A: Fn(usize, u32) -> bool> Wave<'_, T, A> {
         for (at, _) in self.rays.iter().enumerate().filter(|(_, ray)| ray.is_valid()) {
             met.add(at as u32, Child(0));
         }
-        let met = met.len;
-        self.met.keep(met);
+        drop(met);
         while self.met.len() > 0 {
             self.met.take(TOGETHER, &mut self.nodes, &mut self.leaves);
             self.step();
-            if self.leaves.len() >= BLOCKS {
+            if self.leaves.len() >= LEAVES {
                 self.test();
             }
         }
@@ -135,8 +135,7 @@ impl<T: Kept, A: Fn(usize, u32) -> bool> Wave<'_, T, A> {
             let children = unsafe { _mm256_load_si256(wide.children.as_ptr().cast()) };
             met.push_for(_mm256_set1_epi32(ray as i32), children, mask);
         }
-        let met = met.len;
-        self.met.keep(met);
+        drop(met);
         self.nodes.clear();
     }
 
@@ -183,9 +182,7 @@ impl<T: Kept, A: Fn(usize, u32) -> bool> Wave<'_, T, A> {
         for index in 0..self.inside.len() {
             let Crossing { ray, block, lane } = self.inside.get(index);
             let triangle = blocks[block].index(lane);
-            if (self.accept)(self.first + ray, triangle) {
-                self.piles.add(ray, T::of(&Hit { t: 0.0, triangle, u: 0.0, v: 0.0 }));
-            }
+            self.keep(ray, &Hit { t: 0.0, triangle, u: 0.0, v: 0.0 });
         }
         self.inside.clear();
         let count = self.crossed.len();
@@ -201,9 +198,9 @@ impl<T: Kept, A: Fn(usize, u32) -> bool> Wave<'_, T, A> {
                 let Crossing { ray, block, lane } = *crossing;
                 if known >> place & 1 == 1 {
                     let triangle = blocks[block].index(lane);
-                    self.keep(ray, &Hit { t: t[place], triangle, u: u[place], v: v[place] });
+                    self.look_at(ray, &Hit { t: t[place], triangle, u: u[place], v: v[place] });
                 } else if let Some(hit) = unknown_hit(&blocks[block], lane, true, &self.rays[ray]) {
-                    self.keep(ray, &hit);
+                    self.look_at(ray, &hit);
                 }
             }
         }
@@ -217,16 +214,24 @@ impl<T: Kept, A: Fn(usize, u32) -> bool> Wave<'_, T, A> {
         let block = &self.trip.layout.blocks[block];
         for lane in lanes(mask) {
             if let Some(hit) = unknown_hit(block, lane, false, &self.rays[ray]) {
-                self.keep(ray, &hit);
+                self.look_at(ray, &hit);
             }
         }
     }
 
-    /// Keeps a hit that is in the ray's interval.
+    /// Keeps a hit if it is in the ray's interval.
+    #[inline(always)]
+    fn look_at(&mut self, ray: usize, hit: &Hit) {
+        let Ray { t_min, t_max, .. } = self.rays[ray];
+        if t_min <= hit.t && hit.t <= t_max {
+            self.keep(ray, hit);
+        }
+    }
+
+    /// Keeps a hit in the ray's interval, if the ray sees the triangle.
     #[inline(always)]
     fn keep(&mut self, ray: usize, hit: &Hit) {
-        let Ray { t_min, t_max, .. } = self.rays[ray];
-        if t_min <= hit.t && hit.t <= t_max && (self.accept)(self.first + ray, hit.triangle) {
+        if (self.accept)(self.first + ray, hit.triangle) {
             self.piles.add(ray, T::of(hit));
         }
     }
@@ -270,21 +275,28 @@ mod tests {
             let t_max = if index.is_multiple_of(5) { 0.7 } else { f32::INFINITY };
             Ray { t_min, t_max, ..ray }
         };
-        let rays: Vec<Ray> = (0..1000).map(ray).collect();
-        let one_by_one = |ray: &Ray| {
-            let mut hits = FirstHits::new(ray, usize::MAX, |_| true, Vec::new());
-            traverse(&trip, ray, &mut hits);
+        let mut rays: Vec<Ray> = (0..1000).map(ray).collect();
+        // These can hit nothing.
+        rays.iter_mut().step_by(7).for_each(|ray| ray.direction = [0.0; 3]);
+        // Every ray sees the thousand, and of the others its own.
+        let accept = |index: usize| {
+            move |triangle: u32| triangle >= 800 || !(triangle + index as u32).is_multiple_of(11)
+        };
+        let one_by_one = |(index, ray): (usize, &Ray)| {
+            let mut hits = FirstHits::new(ray, usize::MAX, accept(index), Vec::new());
+            if ray.is_valid() {
+                traverse(&trip, ray, &mut hits);
+            }
             hits.hits
         };
-        let expected: Vec<_> = rays.iter().map(one_by_one).collect();
+        let expected: Vec<_> = rays.iter().enumerate().map(one_by_one).collect();
         assert!(expected.iter().map(Vec::len).max() > Some(1000), "some meet the thousand");
         let mut hits = vec![Vec::new(); rays.len()];
-        let all = |_: usize| |_: u32| true;
         // SAFETY: the processor has AVX2.
-        unsafe { trace_avx2(proof, &trip, &rays, all, |at, it: &[Hit]| hits[at] = it.to_vec()) };
+        unsafe { trace_avx2(proof, &trip, &rays, accept, |at, it: &[Hit]| hits[at] = it.to_vec()) };
         let mut counts = vec![0; rays.len()];
         // SAFETY: as above.
-        unsafe { trace_avx2(proof, &trip, &rays, all, |at, it: &[u32]| counts[at] = it.len()) };
+        unsafe { trace_avx2(proof, &trip, &rays, accept, |at, it: &[u32]| counts[at] = it.len()) };
         for (at, expected) in expected.iter().enumerate() {
             assert_eq!(counts[at], expected.len(), "{:?}", rays[at]);
             assert_eq!(hits[at], *expected, "{at}");

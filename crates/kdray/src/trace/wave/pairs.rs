@@ -1,7 +1,6 @@
 //! Pairs of a ray and what it meets.
 
 use std::arch::x86_64::*;
-use std::marker::PhantomData;
 
 use crate::trace::step::places;
 use crate::trace::wide::Child;
@@ -35,17 +34,11 @@ impl Pairs {
         }
     }
 
-    /// Where up to so many pairs are added; [`Pairs::keep`] says how many were.
+    /// Where up to so many pairs are added. They are there when that is dropped.
     pub(super) fn end(&mut self, room: usize) -> End<'_> {
         self.make_room(room);
         let (rays, children) = (self.rays.as_mut_ptr(), self.children.as_mut_ptr());
-        End { rays, children, len: self.len, full: self.len + room, of: PhantomData }
-    }
-
-    /// Keeps the pairs so far, of those that were written.
-    pub(super) fn keep(&mut self, len: usize) {
-        assert!(len <= self.rays.len(), "they were written");
-        self.len = len;
+        End { rays, children, len: self.len, full: self.len + room, of: &mut self.len }
     }
 
     /// Takes the last pairs, at most so many, and adds them to those of their kind.
@@ -68,9 +61,6 @@ impl Pairs {
             nodes.push(rays, children, present & !are_leaves);
             leaves.push(rays, children, present & are_leaves);
         }
-        let (nodes, leaves) = (nodes.len, leaves.len);
-        to_nodes.keep(nodes);
-        to_leaves.keep(leaves);
         self.len = first;
     }
 
@@ -90,13 +80,21 @@ impl Pairs {
     }
 }
 
-/// Where pairs are added to [`Pairs`]. There is always room for them.
+/// Where pairs are added to [`Pairs`]. There is always room for them. Their number is kept apart until
+/// the end: a loop has it in a register.
 pub(super) struct End<'a> {
     rays: *mut u32,
     children: *mut Child,
-    pub(super) len: usize,
+    len: usize,
     full: usize,
-    of: PhantomData<&'a mut Pairs>,
+    of: &'a mut usize,
+}
+
+impl Drop for End<'_> {
+    #[inline(always)]
+    fn drop(&mut self) {
+        *self.of = self.len;
+    }
 }
 
 impl End<'_> {

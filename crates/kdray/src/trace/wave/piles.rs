@@ -4,6 +4,7 @@ use std::arch::x86_64::*;
 
 use super::RAYS;
 use crate::geometry::Hit;
+use crate::geometry::ordered::ordered;
 
 /// What is kept of a hit.
 pub(in crate::trace) trait Kept: Copy {
@@ -34,10 +35,8 @@ impl Kept for Hit {
     /// By `t`, and then by the triangle. One in several leaves gives the very same hit in each of them.
     #[inline(always)]
     fn key(&self) -> u64 {
-        // Zero has one sign, and bits of numbers are in the order of the numbers.
-        let bits = (self.t + 0.0).to_bits();
-        let ordered = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
-        u64::from(ordered) << 32 | u64::from(self.triangle)
+        // Zero has one sign.
+        u64::from(ordered(self.t + 0.0)) << 32 | u64::from(self.triangle)
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! Both give the same bits: every operation is rounded on its own, as `NodeCost` says.
 
-use super::event::{Event, position_of};
+use super::event::Event;
+use crate::geometry::ordered::position_of;
 
 /// Planes that are counted and priced together.
 pub(super) const LANES: usize = 8;
