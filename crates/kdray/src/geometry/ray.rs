@@ -19,6 +19,11 @@ pub struct Ray {
     pub t_max: f32,
 }
 
+const SIGN: u32 = 1 << 31;
+/// Between these is the largest component of a direction.
+const LEAST: f32 = 1e-21;
+const MOST: f32 = 1e21;
+
 impl Ray {
     /// The half-line from `origin` on: `t` from zero to infinity.
     #[must_use]
@@ -35,13 +40,11 @@ impl Ray {
     /// Whether the ray can hit anything at all.
     #[inline]
     pub(crate) fn is_valid(&self) -> bool {
-        let within = |v: &[f32; 3], most: f32| {
-            (v[0].abs() <= most) & (v[1].abs() <= most) & (v[2].abs() <= most)
-        };
-        let [x, y, z] = self.direction.map(f32::abs);
-        within(&self.origin, f32::MAX)
-            & within(&self.direction, 1e21)
-            & ((x >= 1e-21) | (y >= 1e-21) | (z >= 1e-21))
+        // Magnitudes are in the order of their bits, and what is not a number is beyond all of them.
+        let magnitude = |v: f32| v.to_bits() & !SIGN;
+        let largest = |[x, y, z]: [f32; 3]| magnitude(x).max(magnitude(y)).max(magnitude(z));
+        (largest(self.origin) <= f32::MAX.to_bits())
+            & (LEAST.to_bits()..=MOST.to_bits()).contains(&largest(self.direction))
             & (self.t_min <= self.t_max)
     }
 }

@@ -11,7 +11,7 @@ type Lanes = [f32; LANES];
 
 /// Corners and indices of up to eight triangles. Free lanes have the index of the first one, and corners
 /// that are not numbers, so that no ray seems to hit anything there.
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Block {
     /// By corner and axis.

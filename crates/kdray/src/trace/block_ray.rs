@@ -3,7 +3,8 @@
 use std::arch::x86_64::*;
 
 use super::block::{Block, LANES};
-use super::prepare::{AXES, frame};
+use super::prepare::AXES;
+use super::step::{halves, lanes, largest, magnitude};
 use crate::geometry::Ray;
 
 /// A ray ready for the triangles of blocks, as [`Shear`](super::prepare::Shear) is for one: single
@@ -24,23 +25,22 @@ impl BlockRay {
     #[inline]
     #[target_feature(enable = "avx2")]
     pub(super) fn new(ray: &Ray) -> Self {
-        let axes = &FRAMES[frame(&ray.direction)];
-        // SAFETY: a ray is eight numbers, and there are four axes; the fourth is of no consequence.
-        let [origin, direction, axes] = unsafe {
-            let start = std::ptr::from_ref(ray).cast::<f32>();
-            let axes = _mm_loadu_si128(axes.as_ptr().cast());
-            [
-                _mm_permutevar_ps(_mm_loadu_ps(start), axes),
-                _mm_permutevar_ps(_mm_loadu_ps(start.add(4)), axes),
-                _mm_castsi128_ps(axes),
-            ]
+        let [origin, direction] = halves(ray);
+        let all = magnitude(direction);
+        let largest = lanes(_mm_cmpeq_ps(all, largest(all)));
+        // SAFETY: there are four axes; the fourth is of no consequence.
+        let axes = unsafe {
+            let axes = FRAMES.get_unchecked(largest << 3 | lanes(direction));
+            _mm_loadu_si128(axes.as_ptr().cast())
         };
+        let [origin, direction] =
+            [_mm_permutevar_ps(origin, axes), _mm_permutevar_ps(direction, axes)];
         let across = _mm_cvtps_pd(direction);
         let along = _mm_cvtps_pd(_mm_movehl_ps(direction, direction));
         let t_per_z = _mm_div_sd(_mm_set_sd(1.0), along);
         let slope = _mm_mul_pd(across, _mm_movedup_pd(t_per_z));
         let mut new = Self::default();
-        let rows = _mm_slli_epi32::<ROW_BITS>(_mm_castps_si128(axes));
+        let rows = _mm_slli_epi32::<ROW_BITS>(axes);
         let rounded = _mm_castps_pd(_mm_cvtpd_ps(slope));
         // SAFETY: there is room for as many numbers.
         unsafe {
@@ -77,17 +77,22 @@ impl BlockRay {
     }
 }
 
-/// [`AXES`], for permutations.
-static FRAMES: [[u32; 4]; 6] = {
-    let mut frames = [[3; 4]; 6];
-    let mut frame = 0;
-    while frame < 6 {
+/// By which axes of a direction are the largest, and which are negative, a bit each: the axes of ray space,
+/// for permutations.
+static FRAMES: [[u32; 4]; 64] = {
+    let mut frames = [[3; 4]; 64];
+    let mut at = 0;
+    while at < 64 {
+        let (largest, negative) = (at >> 3, at & 7);
+        // Of several, the last one, as for `frame`.
+        let axis = if largest & 4 != 0 { 2 } else { largest >> 1 & 1 };
+        let frame = axis + 3 * (negative >> axis & 1);
         let mut place = 0;
         while place < 3 {
-            frames[frame][place] = AXES[frame][place] as u32;
+            frames[at][place] = AXES[frame][place] as u32;
             place += 1;
         }
-        frame += 1;
+        at += 1;
     }
     frames
 };

@@ -62,35 +62,38 @@ impl Block {
         ray: &BlockRay,
         [t_min, t_max]: [f32; 2],
         whether: bool,
-    ) -> Filtered {
+    ) -> Option<Filtered> {
         let corners = self.sheared_avx2(ray);
         let all = |number: f32| Eight(_mm256_set1_ps(number));
         let (first, last, t_per_z) = (all(t_min), all(t_max), all(ray.precise[2] as f32));
         let crossed = crossed(&corners);
         let (mut maybe, surely) = (crossed.maybe.bits(), crossed.surely.bits());
         if maybe == 0 {
-            return Filtered::NONE;
+            return None;
         }
         let [a, b, c] = by_axis!(|corner| corners[corner][2] * t_per_z);
         let is_ahead = a.min(b).min(c).is_less(first).bits() & maybe == 0;
         if whether || !is_ahead || t_max < f32::INFINITY {
             let (sifted, _) = crossed_between(&corners, &crossed, t_per_z, [first, last]);
             maybe = sifted.maybe;
-            if maybe == 0 || whether && sifted.inside != 0 {
-                return Filtered { maybe, surely, inside: sifted.inside, ..Filtered::NONE };
+            if maybe == 0 {
+                return None;
+            }
+            if whether && sifted.inside != 0 {
+                return Some(Filtered { maybe, surely, inside: sifted.inside, ..Filtered::NONE });
             }
         }
         let Located { known, t, u, v } = self.located_avx2(ray);
         let (t, known) = (t.rounded(), known & surely);
         let inside = first.is_at_most(t).and(t.is_at_most(last)).bits();
-        Filtered {
+        Some(Filtered {
             maybe: maybe & (inside | !known),
             surely,
             inside: inside & maybe & known,
             located: known,
             earliest: eights::Eights::numbers(t),
             weights: [eights::Eights::numbers(u.rounded()), eights::Eights::numbers(v.rounded())],
-        }
+        })
     }
 
     /// Of the lanes whose edge functions do not differ in sign: all, those whose are not zero, and, if
@@ -140,7 +143,9 @@ impl Filtered {
     #[inline(always)]
     pub(super) fn hit(&self, block: &Block, lane: usize, ray: &Ray) -> Option<Hit> {
         if self.located >> lane & 1 == 0 {
-            return unknown_hit(block, lane, self.surely(lane), ray);
+            // Number by number: written where the caller's are, they would be read before they are there.
+            let Hit { t, triangle, u, v } = unknown_hit(block, lane, self.surely(lane), ray)?;
+            return Some(Hit { t, triangle, u, v });
         }
         let [u, v] = [self.weights[0][lane], self.weights[1][lane]];
         Some(Hit { t: self.earliest[lane], triangle: block.index(lane), u, v })

@@ -82,6 +82,19 @@ impl<const CAPACITY: usize> StackOf<CAPACITY> {
         self.height += count;
     }
 
+    #[inline(always)]
+    pub(super) fn height(&self) -> usize {
+        self.height
+    }
+
+    /// The subtree on top, if it is above that height.
+    #[inline(always)]
+    pub(super) fn top_above(&self, height: usize) -> Option<Child> {
+        // SAFETY: everything below the height was written.
+        (self.height > height)
+            .then(|| unsafe { self.children.get_unchecked(self.height - 1).assume_init() })
+    }
+
     /// The subtree on top of a stack that is not empty.
     #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     #[inline(always)]

@@ -24,7 +24,7 @@ fn visit<S: Simd>(
         visitor.leaf();
         // Made when the first leaf is reached: many rays reach none. Its memory is asked for meanwhile.
         let shear = shear.get_or_insert_with(|| {
-            layout.prefetch(child);
+            layout.prefetch_block(child);
             simd.shear(ray)
         });
         // SAFETY: children of a layout are in it.
@@ -36,7 +36,13 @@ fn visit<S: Simd>(
         // SAFETY: as above.
         let wide = unsafe { layout.wides.get_unchecked(child.0 as usize) };
         let interval = [ray.t_min, *until];
-        simd.nearest(wide, slabs, interval, stack).or_else(|| stack.pop(*until))
+        let height = stack.height();
+        let next = simd.nearest(wide, slabs, interval, stack);
+        // What comes after it, as likely as not, comes nearer meanwhile. Asking for all that were met is slower.
+        if let Some(later) = stack.top_above(height) {
+            layout.prefetch(later);
+        }
+        next.or_else(|| stack.pop(*until))
     }
 }
 
@@ -176,7 +182,9 @@ fn test_block<S: Simd, V: Visitor>(
     visitor: &mut V,
 ) -> f32 {
     visitor.test();
-    let mut filtered = simd.filter(block, shear, [ray.t_min, until], V::ASKS_WHETHER);
+    let Some(mut filtered) = simd.filter(block, shear, [ray.t_min, until], V::ASKS_WHETHER) else {
+        return until;
+    };
     if V::ASKS_WHETHER {
         for lane in filtered.inside() {
             until = lesser(until, visitor.inside(block.index(lane)));

@@ -10,7 +10,7 @@ use crate::geometry::{Aabb, Mesh};
 use crate::tree::Tree;
 
 /// Eight boxes, and what is in them. Free places have empty boxes.
-#[repr(C, align(32))]
+#[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub(super) struct Wide {
     /// By end (lower, upper), axis and child.
@@ -46,12 +46,12 @@ impl Child {
     /// The first block of a leaf, or `None` for a wide node.
     #[inline(always)]
     pub(super) fn block(self) -> Option<usize> {
-        (self.0 & Self::LEAF != 0).then_some(self.first_block())
+        (self.0 & Self::LEAF != 0).then_some(self.place())
     }
 
-    /// The first block of a leaf.
+    /// The place of a wide node, or of the first block of a leaf.
     #[inline(always)]
-    pub(super) fn first_block(self) -> usize {
+    pub(super) fn place(self) -> usize {
         (self.0 & !(Self::LEAF | Self::ONE)) as usize
     }
 
@@ -114,16 +114,21 @@ impl Layout {
         size_of_val(&self.wides[..]) + size_of_val(&self.blocks[..])
     }
 
-    /// Asks for the memory of a wide node, or of the first block of a leaf.
+    /// Asks for the memory of a wide node, or of the first block of a leaf, without a jump.
     #[inline(always)]
     pub(super) fn prefetch(&self, child: Child) {
-        if child.block().is_none() { self.prefetch_wide(child) } else { self.prefetch_block(child) }
+        let (wides, blocks) = (self.wides.as_ptr().cast::<u8>(), self.blocks.as_ptr().cast::<u8>());
+        let is_leaf = child.block().is_some();
+        let (start, size) =
+            if is_leaf { (blocks, size_of::<Block>()) } else { (wides, size_of::<Wide>()) };
+        // Of the larger; the next node is below this one.
+        prefetch(start.wrapping_add(child.place() * size).cast::<Block>());
     }
 
     /// Asks for the memory of the first block of a leaf.
     #[inline(always)]
     pub(super) fn prefetch_block(&self, leaf: Child) {
-        prefetch(self.blocks.as_ptr().wrapping_add(leaf.first_block()));
+        prefetch(self.blocks.as_ptr().wrapping_add(leaf.place()));
     }
 
     /// Asks for the memory of a child that is a wide node.

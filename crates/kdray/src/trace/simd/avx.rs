@@ -85,7 +85,7 @@ macro_rules! simd {
                 shear: &BlockRay,
                 interval: [f32; 2],
                 whether: bool,
-            ) -> Filtered {
+            ) -> Option<Filtered> {
                 // SAFETY: as above.
                 unsafe { block.filter_avx2::<Self>(shear, interval, whether) }
             }

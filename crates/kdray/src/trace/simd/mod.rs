@@ -44,7 +44,7 @@ pub(super) trait Simd: Copy {
         shear: &Self::Shear,
         interval: [f32; 2],
         whether: bool,
-    ) -> Filtered;
+    ) -> Option<Filtered>;
 
     /// Takes out the lane that may be hit first, if that is not after `until`.
     #[inline(always)]
@@ -97,8 +97,8 @@ impl Simd for Plain {
     }
 
     #[inline(always)]
-    fn filter(self, block: &Block, _: &Shear, _: [f32; 2], _: bool) -> Filtered {
-        block.unknown()
+    fn filter(self, block: &Block, _: &Shear, _: [f32; 2], _: bool) -> Option<Filtered> {
+        Some(block.unknown())
     }
 
     #[inline(always)]
@@ -246,7 +246,8 @@ mod tests {
             let t_max = if round % 2 == 0 { t_max } else { f32::INFINITY };
             let ray = Ray { origin, direction, t_min, t_max };
             let shear = simd.shear(&ray);
-            let mut said = simd.filter(&block, &shear, [t_min, t_max], whether);
+            let said = simd.filter(&block, &shear, [t_min, t_max], whether);
+            let mut said = said.unwrap_or(Filtered::NONE);
             let mut hits = 0;
             for lane in 0..8 {
                 let [maybe, surely, inside] =

@@ -5,9 +5,9 @@
 
 use std::arch::x86_64::*;
 
+use super::axes::Axes;
 use super::nearer_of_two;
 use crate::geometry::Ray;
-use crate::trace::prepare::{SMALLEST, THICKNESS};
 use crate::trace::stack::Stack;
 use crate::trace::wide::{Child, Wide};
 
@@ -24,51 +24,11 @@ impl Lanes {
     #[inline]
     #[target_feature(enable = "avx2")]
     pub(in crate::trace) fn new(ray: &Ray, reach: f32) -> Self {
-        let Axes { inverse, enter, leave } = Axes::new(ray, reach);
+        let Axes { inverse, enter, leave, octant } = Axes::new(ray, reach);
         let axes = |v: __m128| {
             [v, _mm_movehdup_ps(v), _mm_movehl_ps(v, v)].map(|axis| _mm256_broadcastss_ps(axis))
         };
-        Self {
-            inverse: axes(inverse),
-            enter: axes(enter),
-            leave: axes(leave),
-            octant: _mm_movemask_ps(inverse) as usize & 7,
-        }
-    }
-}
-
-/// [`Slabs`](crate::trace::prepare::Slabs) with an axis a lane, and a number of no consequence.
-pub(in crate::trace) struct Axes {
-    pub(in crate::trace) inverse: __m128,
-    pub(in crate::trace) enter: __m128,
-    pub(in crate::trace) leave: __m128,
-}
-
-impl Axes {
-    /// The arithmetic of [`Slabs::new`](crate::trace::prepare::Slabs::new), on all axes at once.
-    #[inline]
-    #[target_feature(enable = "avx2")]
-    pub(in crate::trace) fn new(ray: &Ray, reach: f32) -> Self {
-        let all = |value: f32| _mm_set1_ps(value);
-        let magnitude = |v: __m128| _mm_andnot_ps(all(-0.0), v);
-        let largest = |v: __m128| {
-            let two = _mm_max_ss(v, _mm_movehdup_ps(v));
-            _mm_broadcastss_ps(_mm_max_ss(two, _mm_movehl_ps(v, v)))
-        };
-        // SAFETY: a ray is eight numbers; the fourth lanes, its limits, are of no consequence.
-        let [origin, direction] = unsafe {
-            let start = std::ptr::from_ref(ray).cast::<f32>();
-            [_mm_loadu_ps(start), _mm_loadu_ps(start.add(4))]
-        };
-        let smallest = _mm_mul_ps(all(SMALLEST), largest(magnitude(direction)));
-        let reach = _mm_add_ps(largest(magnitude(origin)), all(reach));
-        let thickness = _mm_mul_ps(all(THICKNESS), reach);
-        let small = _mm_cmplt_ps(magnitude(direction), smallest);
-        let signed = _mm_or_ps(_mm_and_ps(all(-0.0), direction), smallest);
-        let inverse = _mm_div_ps(all(1.0), _mm_blendv_ps(direction, signed, small));
-        let offset = _mm_mul_ps(origin, inverse);
-        let thick = _mm_mul_ps(thickness, magnitude(inverse));
-        Self { inverse, enter: _mm_add_ps(offset, thick), leave: _mm_sub_ps(offset, thick) }
+        Self { inverse: axes(inverse), enter: axes(enter), leave: axes(leave), octant }
     }
 }
 

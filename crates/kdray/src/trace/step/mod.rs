@@ -1,14 +1,18 @@
 //! One step down: which children of a wide node the ray meets, in which order, and where.
 
 #[cfg(target_arch = "x86_64")]
+mod axes;
+#[cfg(target_arch = "x86_64")]
 mod lanes;
 
 use super::prepare::{Slabs, greater, lesser};
 use super::stack::Stack;
 use super::wide::{Child, Wide};
 #[cfg(target_arch = "x86_64")]
+pub(super) use axes::{Axes, halves, lanes, largest, magnitude};
+#[cfg(target_arch = "x86_64")]
 pub(super) use lanes::{
-    Axes, Lanes, ROW, ROWS, far_to_near_avx2, nearest_avx2, nearest_avx512, places, push_avx2,
+    Lanes, ROW, ROWS, far_to_near_avx2, nearest_avx2, nearest_avx512, places, push_avx2,
     push_avx512,
 };
 

@@ -150,7 +150,7 @@ impl<T: Kept, A: Fn(usize, u32) -> bool> Wave<'_, T, A> {
         for (at, child, ahead) in pairs {
             layout.prefetch_block(ahead);
             let Ray { t_min, t_max, .. } = self.rays[at as usize];
-            for place in child.first_block().. {
+            for place in child.place().. {
                 let (ray, block) = (&self.prepared[at as usize], &layout.blocks[place]);
                 let Sifted { maybe, surely, inside } = block.crossed_avx2::<T>(ray, [t_min, t_max]);
                 if T::ASKS_WHETHER {

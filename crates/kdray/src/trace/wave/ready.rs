@@ -26,7 +26,7 @@ impl Ready {
     #[inline]
     #[target_feature(enable = "avx2")]
     pub(super) fn new(ray: &Ray, reach: f32) -> Self {
-        let Axes { inverse, enter, leave } = Axes::new(ray, reach);
+        let Axes { inverse, enter, leave, .. } = Axes::new(ray, reach);
         let less = |v: __m128| _mm_xor_ps(_mm_set1_ps(-0.0), v);
         let [row, rows] = [ROW as i32, 3 * ROW as i32];
         let backward = _mm_srai_epi32::<31>(_mm_castps_si128(inverse));
