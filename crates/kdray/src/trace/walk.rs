@@ -131,7 +131,7 @@ impl<'a, S: Simd> Walk<'a, S> {
     /// What comes next, or [`Child::NONE`]; asks for its memory.
     #[inline(always)]
     fn next(&mut self, layout: &Layout) -> Child {
-        let next = self.stack.pop(self.until).unwrap_or(Child::NONE);
+        let Some(next) = self.stack.pop(self.until) else { return Child::NONE };
         layout.prefetch(next);
         next
     }
