@@ -28,7 +28,7 @@ impl BlockRay {
         let [origin, direction] = halves(ray);
         let all = magnitude(direction);
         let largest = lanes(_mm_cmpeq_ps(all, largest(all)));
-        // SAFETY: there are four axes; the fourth is of no consequence.
+        // SAFETY: both are below eight. There are four axes; the fourth is of no consequence.
         let axes = unsafe {
             let axes = FRAMES.get_unchecked(largest << 3 | lanes(direction));
             _mm_loadu_si128(axes.as_ptr().cast())
@@ -99,3 +99,34 @@ static FRAMES: [[u32; 4]; 64] = {
 
 /// A row of a block's corners has so many bytes, as a power of two.
 const ROW_BITS: i32 = size_of::<[f32; LANES]>().trailing_zeros() as i32;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::prepare::Shear;
+    use crate::trace::simd::Best;
+
+    #[test]
+    fn axes_are_those_of_shears() {
+        if Best::detect().avx2().is_none() {
+            println!("this processor has no AVX2");
+            return;
+        }
+        // Several are largest in many of these.
+        let components = [-2.0_f32, -1.0, -0.0, 0.0, 1.0, 2.0];
+        for case in 0..components.len().pow(3) {
+            let direction = [case / 36, case / 6 % 6, case % 6].map(|at| components[at]);
+            let ray = Ray::new([0.5, -7.0, 2.0], direction);
+            if ray.is_valid() {
+                let shear = Shear::new(&ray);
+                // SAFETY: the processor has AVX2.
+                let found = unsafe { BlockRay::new(&ray) };
+                assert_eq!(found.rows[..3], shear.axes.map(|axis| 32 * axis as u32), "{ray:?}");
+                assert_eq!(found.origin[..3], shear.origin, "{ray:?}");
+                assert_eq!(found.slope, shear.shear, "{ray:?}");
+                assert_eq!(found.precise[..2], shear.precise_shear, "{ray:?}");
+                assert_eq!(found.precise[2], shear.t_per_z, "{ray:?}");
+            }
+        }
+    }
+}

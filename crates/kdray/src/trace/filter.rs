@@ -143,7 +143,7 @@ impl Filtered {
     #[inline(always)]
     pub(super) fn hit(&self, block: &Block, lane: usize, ray: &Ray) -> Option<Hit> {
         if self.located >> lane & 1 == 0 {
-            // Number by number: written where the caller's are, they would be read before they are there.
+            // Number by number: read as a whole, from where the call wrote its parts, they would be waited for.
             let Hit { t, triangle, u, v } = unknown_hit(block, lane, self.surely(lane), ray)?;
             return Some(Hit { t, triangle, u, v });
         }

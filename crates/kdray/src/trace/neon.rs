@@ -130,14 +130,15 @@ impl Simd for Neon {
         ray: &ShearLanes,
         [t_min, t_max]: [f32; 2],
         _: bool,
-    ) -> Filtered {
+    ) -> Option<Filtered> {
         let corners = block.corners().each_ref().map(|rows| {
             let corner = ray.shear.axes.map(|axis| self.load(&rows[axis]));
             sheared(corner, &ray.origin, &ray.slope)
         });
         let interval = [self.all(t_min), self.all(t_max)];
         let (Sifted { maybe, surely, inside }, early) = sift(&corners, ray.t_per_z, interval);
-        Filtered { maybe, surely, inside, earliest: early.numbers().0, ..Filtered::NONE }
+        let earliest = early.numbers().0;
+        (maybe != 0).then_some(Filtered { maybe, surely, inside, earliest, ..Filtered::NONE })
     }
 
     #[inline(always)]

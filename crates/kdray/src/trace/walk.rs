@@ -38,7 +38,7 @@ fn visit<S: Simd>(
         let interval = [ray.t_min, *until];
         let height = stack.height();
         let next = simd.nearest(wide, slabs, interval, stack);
-        // What comes after it, as likely as not, comes nearer meanwhile. Asking for all that were met is slower.
+        // What may come after it is asked for meanwhile; asking for all that are met is slower.
         if let Some(later) = stack.top_above(height) {
             layout.prefetch(later);
         }

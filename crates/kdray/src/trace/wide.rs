@@ -121,7 +121,7 @@ impl Layout {
         let is_leaf = child.block().is_some();
         let (start, size) =
             if is_leaf { (blocks, size_of::<Block>()) } else { (wides, size_of::<Wide>()) };
-        // Of the larger; the next node is below this one.
+        // As many lines as the larger has.
         prefetch(start.wrapping_add(child.place() * size).cast::<Block>());
     }
 
@@ -132,6 +132,7 @@ impl Layout {
     }
 
     /// Asks for the memory of a child that is a wide node.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn prefetch_wide(&self, child: Child) {
         prefetch(self.wides.as_ptr().wrapping_add(child.0 as usize));

@@ -36,8 +36,8 @@ pub(super) trait Simd: Copy {
     /// Puts the children that are met in the interval on the stack, the nearest on top.
     fn push(self, wide: &Wide, slabs: &Self::Slabs, interval: [f32; 2], stack: &mut Stack);
 
-    /// The triangles of a block that may be hit in the interval; `whether` it is enough to know that they
-    /// are, and not where.
+    /// The triangles of a block that may be hit in the interval, if any may; `whether` it is enough to know
+    /// that they are, and not where.
     fn filter(
         self,
         block: &Block,

@@ -79,3 +79,38 @@ pub(in crate::trace) fn largest(magnitudes: __m128) -> __m128 {
 pub(in crate::trace) fn lanes(v: __m128) -> usize {
     _mm_movemask_ps(v) as usize & 7
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::prepare::Slabs;
+    use crate::trace::simd::Best;
+
+    #[test]
+    fn axes_are_those_of_slabs() {
+        if Best::detect().avx2().is_none() {
+            println!("this processor has no AVX2");
+            return;
+        }
+        let numbers = |v: __m128| {
+            let mut numbers = [0.0; 4];
+            // SAFETY: there is room for four.
+            unsafe { _mm_storeu_ps(numbers.as_mut_ptr(), v) };
+            [numbers[0], numbers[1], numbers[2]]
+        };
+        let components = [-3.0_f32, -1.0, -1e-12, -0.0, 0.0, 1e-10, 1.0];
+        for case in 0..components.len().pow(3) {
+            let direction = [case / 49, case / 7 % 7, case % 7].map(|at| components[at]);
+            let ray = Ray::new([0.5, -7.0, 2.0], direction);
+            if ray.is_valid() {
+                let slabs = Slabs::new(&ray, 4.0);
+                // SAFETY: the processor has AVX2.
+                let axes = unsafe { Axes::new(&ray, 4.0) };
+                assert_eq!(numbers(axes.inverse), slabs.inverse, "{ray:?}");
+                assert_eq!(numbers(axes.enter), slabs.enter, "{ray:?}");
+                assert_eq!(numbers(axes.leave), slabs.leave, "{ray:?}");
+                assert_eq!(axes.octant, slabs.octant(), "{ray:?}");
+            }
+        }
+    }
+}
