@@ -3,9 +3,12 @@
 //! A leaf of more triangles than a block holds is halved, and its halves, so that the boxes of its
 //! blocks are small: a ray that meets the leaf passes by most of them.
 
+use smallvec::SmallVec;
+
 use crate::geometry::Aabb;
 use crate::geometry::ordered::ordered;
 use crate::trace::block::LANES;
+use crate::trace::prepare::{greater, lesser};
 
 /// Leaves of more triangles keep their order. No wide node holds as many blocks.
 const MOST: usize = 8 * LANES;
@@ -46,33 +49,47 @@ fn halve(parts: &mut [Part]) -> usize {
             (best, best_cost) = ((axis, left), cost);
         }
     }
-    let mut ordered = [parts[0]; MOST];
-    for (part, keyed) in ordered.iter_mut().zip(&orders[best.0][..parts.len()]) {
-        *part = parts[place_of(*keyed)];
-    }
-    parts.copy_from_slice(&ordered[..parts.len()]);
+    let order = &orders[best.0][..parts.len()];
+    let ordered: SmallVec<[Part; MOST]> =
+        order.iter().map(|keyed| parts[place_of(*keyed)]).collect();
+    parts.copy_from_slice(&ordered);
     best.1
 }
 
 /// Of an order, how many parts are best to the left, and the cost.
 fn cut(parts: &[Part], order: &[u64]) -> (usize, f32) {
     let count = parts.len();
+    // How many blocks each side fills, if they are as few as can be.
+    let blocks = |left: usize| {
+        let [of_left, of_right] = [left, count - left].map(|count| count.div_ceil(LANES));
+        (of_left + of_right == count.div_ceil(LANES)).then_some([of_left as f32, of_right as f32])
+    };
     let (mut all, mut below) = (Aabb::EMPTY, [0.0; MOST]);
-    for (below, keyed) in below.iter_mut().zip(order) {
-        all = all.union(&parts[place_of(*keyed)].bounds);
-        *below = all.half_area() as f32;
+    for (at, keyed) in order.iter().enumerate() {
+        all = around(&all, &parts[place_of(*keyed)].bounds);
+        if blocks(at + 1).is_some() {
+            below[at] = all.half_area() as f32;
+        }
     }
     all = Aabb::EMPTY;
     let mut best = (1, f32::INFINITY);
     for left in (1..count).rev() {
-        all = all.union(&parts[place_of(order[left])].bounds);
-        let [of_left, of_right] = [left, count - left].map(|count| count.div_ceil(LANES));
-        if of_left + of_right == count.div_ceil(LANES) {
-            let cost = below[left - 1] * of_left as f32 + all.half_area() as f32 * of_right as f32;
+        all = around(&all, &parts[place_of(order[left])].bounds);
+        if let Some([of_left, of_right]) = blocks(left) {
+            let cost = below[left - 1] * of_left + all.half_area() as f32 * of_right;
             best = if cost < best.1 { (left, cost) } else { best };
         }
     }
     best
+}
+
+/// The box around both, whose bounds are numbers.
+#[inline(always)]
+fn around(a: &Aabb, b: &Aabb) -> Aabb {
+    Aabb {
+        lower: [0, 1, 2].map(|axis| lesser(a.lower[axis], b.lower[axis])),
+        upper: [0, 1, 2].map(|axis| greater(a.upper[axis], b.upper[axis])),
+    }
 }
 
 /// Places of parts in the order of their middles, below keys that are ordered in the same way.
