@@ -1,5 +1,7 @@
 //! The axis-aligned box.
 
+use super::least::{greater, lesser};
+
 /// An axis-aligned box, both corners included.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -32,12 +34,11 @@ impl Aabb {
 
     /// The smallest box that holds both.
     #[must_use]
-    pub fn union(mut self, other: &Self) -> Self {
-        for axis in 0..3 {
-            self.lower[axis] = self.lower[axis].min(other.lower[axis]);
-            self.upper[axis] = self.upper[axis].max(other.upper[axis]);
+    pub fn union(self, other: &Self) -> Self {
+        Self {
+            lower: [0, 1, 2].map(|axis| lesser(self.lower[axis], other.lower[axis])),
+            upper: [0, 1, 2].map(|axis| greater(self.upper[axis], other.upper[axis])),
         }
-        self
     }
 
     /// The box cut in two by the plane `axis = position`.

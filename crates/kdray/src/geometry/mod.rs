@@ -4,6 +4,7 @@ mod aabb;
 pub(crate) mod clip;
 mod corner;
 mod frame;
+pub(crate) mod least;
 mod mesh;
 mod mesh_file;
 pub(crate) mod nearest;

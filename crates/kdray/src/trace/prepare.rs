@@ -1,5 +1,6 @@
 //! What a ray's traversal needs, worked out once.
 
+pub(super) use crate::geometry::least::{greater, lesser};
 use crate::geometry::{Aabb, Ray};
 
 /// A ray that will be intersected with triangles: the shear that takes it to the z axis \[WBA13].
@@ -113,16 +114,4 @@ fn largest([x, y, z]: &[f32; 3]) -> f32 {
 /// The largest coordinate of a box.
 pub(super) fn reach(bounds: &Aabb) -> f32 {
     bounds.lower.iter().chain(&bounds.upper).fold(0.0, |largest, v| v.abs().max(largest))
-}
-
-/// The lesser of two numbers; one instruction, because neither is NaN.
-#[inline(always)]
-pub(super) fn lesser(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// The greater of two numbers; one instruction, because neither is NaN.
-#[inline(always)]
-pub(super) fn greater(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }

@@ -8,7 +8,6 @@ use smallvec::SmallVec;
 use crate::geometry::Aabb;
 use crate::geometry::ordered::ordered;
 use crate::trace::block::LANES;
-use crate::trace::prepare::{greater, lesser};
 
 /// Leaves of more triangles keep their order. No wide node holds as many blocks.
 const MOST: usize = 8 * LANES;
@@ -66,7 +65,7 @@ fn cut(parts: &[Part], order: &[u64]) -> (usize, f32) {
     };
     let (mut all, mut below) = (Aabb::EMPTY, [0.0; MOST]);
     for (at, keyed) in order.iter().enumerate() {
-        all = around(&all, &parts[place_of(*keyed)].bounds);
+        all = all.union(&parts[place_of(*keyed)].bounds);
         if blocks(at + 1).is_some() {
             below[at] = all.half_area() as f32;
         }
@@ -74,22 +73,13 @@ fn cut(parts: &[Part], order: &[u64]) -> (usize, f32) {
     all = Aabb::EMPTY;
     let mut best = (1, f32::INFINITY);
     for left in (1..count).rev() {
-        all = around(&all, &parts[place_of(order[left])].bounds);
+        all = all.union(&parts[place_of(order[left])].bounds);
         if let Some([of_left, of_right]) = blocks(left) {
             let cost = below[left - 1] * of_left + all.half_area() as f32 * of_right;
             best = if cost < best.1 { (left, cost) } else { best };
         }
     }
     best
-}
-
-/// The box around both, whose bounds are numbers.
-#[inline(always)]
-fn around(a: &Aabb, b: &Aabb) -> Aabb {
-    Aabb {
-        lower: [0, 1, 2].map(|axis| lesser(a.lower[axis], b.lower[axis])),
-        upper: [0, 1, 2].map(|axis| greater(a.upper[axis], b.upper[axis])),
-    }
 }
 
 /// Places of parts in the order of their middles, below keys that are ordered in the same way.
