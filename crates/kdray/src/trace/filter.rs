@@ -32,7 +32,7 @@ impl Block {
     /// Where the line of the ray crosses the triangles.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    fn located_avx2(&self, ray: &BlockRay) -> Located<PreciseEight> {
+    fn located_avx2<V>(&self, ray: &BlockRay) -> Located<PreciseEight> {
         let all = |number: f64| PreciseEight([Four(_mm256_set1_pd(number)); 2]);
         let origin = by_axis!(|axis| all(f64::from(ray.origin[axis])));
         let slope = [all(ray.precise[0]), all(ray.precise[1])];
@@ -56,7 +56,6 @@ impl Block {
     /// surface. Where it might, bounds of `t` are asked first: a third of the instructions.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
-    #[expect(clippy::extra_unused_type_parameters, reason = "one function a traversal")]
     pub(super) fn filter_avx2<V>(
         &self,
         ray: &BlockRay,
@@ -83,7 +82,7 @@ impl Block {
                 return Some(Filtered { maybe, surely, inside: sifted.inside, ..Filtered::NONE });
             }
         }
-        let Located { known, t, u, v } = self.located_avx2(ray);
+        let Located { known, t, u, v } = self.located_avx2::<V>(ray);
         let (t, known) = (t.rounded(), known & surely);
         let inside = first.is_at_most(t).and(t.is_at_most(last)).bits();
         Some(Filtered {

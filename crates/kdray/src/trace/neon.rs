@@ -124,7 +124,7 @@ impl Simd for Neon {
     }
 
     #[inline(always)]
-    fn filter(
+    fn filter<P>(
         self,
         block: &Block,
         ray: &ShearLanes,

@@ -137,6 +137,12 @@ impl<'a, S: Simd> Walk<'a, S> {
     }
 }
 
+/// The first block of a leaf is tested.
+struct First;
+
+/// Another one is.
+struct More;
+
 /// Shows the visitor the hits of a leaf; gives the `t` up to which there is more to see.
 #[inline(always)]
 fn test_leaf<S: Simd, V: Visitor>(
@@ -146,7 +152,7 @@ fn test_leaf<S: Simd, V: Visitor>(
     until: f32,
     visitor: &mut V,
 ) -> f32 {
-    let until = test_block(simd, &blocks[0], ray, until, visitor);
+    let until = test_block::<First, _, _>(simd, &blocks[0], ray, until, visitor);
     if is_one || blocks[0].is_last() || until == ENOUGH {
         return until;
     }
@@ -164,7 +170,7 @@ fn test_more<S: Simd, V: Visitor>(
     visitor: &mut V,
 ) -> f32 {
     for block in blocks {
-        until = test_block(simd, block, ray, until, visitor);
+        until = test_block::<More, _, _>(simd, block, ray, until, visitor);
         if block.is_last() || until == ENOUGH {
             break;
         }
@@ -174,7 +180,7 @@ fn test_more<S: Simd, V: Visitor>(
 
 /// Shows the visitor the hits of a block.
 #[inline(always)]
-fn test_block<S: Simd, V: Visitor>(
+fn test_block<P, S: Simd, V: Visitor>(
     simd: S,
     block: &Block,
     (ray, shear): (&Ray, &S::Shear),
@@ -182,7 +188,8 @@ fn test_block<S: Simd, V: Visitor>(
     visitor: &mut V,
 ) -> f32 {
     visitor.test();
-    let Some(mut filtered) = simd.filter(block, shear, [ray.t_min, until], V::ASKS_WHETHER) else {
+    let Some(mut filtered) = simd.filter::<P>(block, shear, [ray.t_min, until], V::ASKS_WHETHER)
+    else {
         return until;
     };
     if V::ASKS_WHETHER {

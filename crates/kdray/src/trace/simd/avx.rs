@@ -79,7 +79,7 @@ macro_rules! simd {
             }
 
             #[inline(always)]
-            fn filter(
+            fn filter<P>(
                 self,
                 block: &Block,
                 shear: &BlockRay,
@@ -87,7 +87,7 @@ macro_rules! simd {
                 whether: bool,
             ) -> Option<Filtered> {
                 // SAFETY: as above.
-                unsafe { block.filter_avx2::<Self>(shear, interval, whether) }
+                unsafe { block.filter_avx2::<(Self, P)>(shear, interval, whether) }
             }
 
             #[inline(always)]

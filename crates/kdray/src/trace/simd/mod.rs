@@ -37,8 +37,9 @@ pub(super) trait Simd: Copy {
     fn push(self, wide: &Wide, slabs: &Self::Slabs, interval: [f32; 2], stack: &mut Stack);
 
     /// The triangles of a block that may be hit in the interval, if any may; `whether` it is enough to know
-    /// that they are, and not where.
-    fn filter(
+    /// that they are, and not where. `P` is the place that asks: each has functions of its own, so that the
+    /// compiler makes them part of it.
+    fn filter<P>(
         self,
         block: &Block,
         shear: &Self::Shear,
@@ -97,7 +98,7 @@ impl Simd for Plain {
     }
 
     #[inline(always)]
-    fn filter(self, block: &Block, _: &Shear, _: [f32; 2], _: bool) -> Option<Filtered> {
+    fn filter<P>(self, block: &Block, _: &Shear, _: [f32; 2], _: bool) -> Option<Filtered> {
         Some(block.unknown())
     }
 
@@ -246,7 +247,7 @@ mod tests {
             let t_max = if round % 2 == 0 { t_max } else { f32::INFINITY };
             let ray = Ray { origin, direction, t_min, t_max };
             let shear = simd.shear(&ray);
-            let said = simd.filter(&block, &shear, [t_min, t_max], whether);
+            let said = simd.filter::<()>(&block, &shear, [t_min, t_max], whether);
             let mut said = said.unwrap_or(Filtered::NONE);
             let mut hits = 0;
             for lane in 0..8 {
