@@ -19,7 +19,6 @@ pub struct Ray {
     pub t_max: f32,
 }
 
-const SIGN: u32 = 1 << 31;
 /// Between these is the largest component of a direction.
 const LEAST: f32 = 1e-21;
 const MOST: f32 = 1e21;
@@ -41,7 +40,7 @@ impl Ray {
     #[inline]
     pub(crate) fn is_valid(&self) -> bool {
         // Magnitudes are in the order of their bits, and what is not a number is beyond all of them.
-        let magnitude = |v: f32| v.to_bits() & !SIGN;
+        let magnitude = |v: f32| v.abs().to_bits();
         let largest = |[x, y, z]: [f32; 3]| magnitude(x).max(magnitude(y)).max(magnitude(z));
         (largest(self.origin) <= f32::MAX.to_bits())
             & (LEAST.to_bits()..=MOST.to_bits()).contains(&largest(self.direction))

@@ -4,7 +4,7 @@ use std::arch::x86_64::*;
 
 use super::block::{Block, LANES};
 use super::prepare::AXES;
-use super::step::{halves, lanes, largest, magnitude};
+use super::step::{halves, largest, magnitude, signs};
 use crate::geometry::Ray;
 
 /// A ray ready for the triangles of blocks, as [`Shear`](super::prepare::Shear) is for one: single
@@ -27,10 +27,10 @@ impl BlockRay {
     pub(super) fn new(ray: &Ray) -> Self {
         let [origin, direction] = halves(ray);
         let all = magnitude(direction);
-        let largest = lanes(_mm_cmpeq_ps(all, largest(all)));
+        let largest = signs(_mm_cmpeq_ps(all, largest(all)));
         // SAFETY: both are below eight. There are four axes; the fourth is of no consequence.
         let axes = unsafe {
-            let axes = FRAMES.get_unchecked(largest << 3 | lanes(direction));
+            let axes = FRAMES.get_unchecked(largest << 3 | signs(direction));
             _mm_loadu_si128(axes.as_ptr().cast())
         };
         let [origin, direction] =

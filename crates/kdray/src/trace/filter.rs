@@ -29,7 +29,7 @@ impl Block {
         })
     }
 
-    /// Where the line of the ray crosses the triangles.
+    /// Where the line of the ray crosses the triangles. `V` is as for the filter.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
     fn located_avx2<V>(&self, ray: &BlockRay) -> Located<PreciseEight> {
@@ -53,7 +53,7 @@ impl Block {
     /// Where it is enough to know whether, that may be all that is said.
     ///
     /// A line that crosses a triangle often does so behind the ray, most of all where the ray starts on a
-    /// surface. Where it might, bounds of `t` are asked first: a third of the instructions.
+    /// surface. Where it might, bounds of `t` are asked first: a third of the instructions. `V` is the place that asks.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
     pub(super) fn filter_avx2<V>(

@@ -132,7 +132,7 @@ fn one_by_one<V: Visitor>(
 /// Whether rays that take turns gain more by that than taking turns costs: where they go a long way, or
 /// start far apart, so that each reads what is in no cache, and go some way.
 fn is_worth_turns(trip: &Trip, rays: &[Ray]) -> bool {
-    // Where both were as fast, over fourteen scenes.
+    // Where both were as fast, over thirteen scenes.
     let least = if start_apart(trip, rays) { 2 } else { 8 };
     // A few rays tell how long their ways are.
     let sample = rays.iter().step_by(64).filter(|ray| ray.is_valid());

@@ -137,10 +137,10 @@ impl<'a, S: Simd> Walk<'a, S> {
     }
 }
 
-/// The first block of a leaf is tested.
+/// Where the first block of a leaf is tested, a place of [`Simd::filter`].
 struct First;
 
-/// Another one is.
+/// Where the others are.
 struct More;
 
 /// Shows the visitor the hits of a leaf; gives the `t` up to which there is more to see.

@@ -26,7 +26,7 @@ impl Axes {
         let reach = _mm_add_ps(largest(magnitude(origin)), all(reach));
         let thickness = _mm_mul_ps(all(THICKNESS), reach);
         let small = _mm_cmplt_ps(magnitude(direction), smallest);
-        let kept = match lanes(small) {
+        let kept = match signs(small) {
             0 => direction,
             _ => kept(direction, smallest, small),
         };
@@ -34,7 +34,7 @@ impl Axes {
         let offset = _mm_mul_ps(origin, inverse);
         let thick = _mm_mul_ps(thickness, magnitude(inverse));
         let (enter, leave) = (_mm_add_ps(offset, thick), _mm_sub_ps(offset, thick));
-        Self { inverse, enter, leave, octant: lanes(direction) }
+        Self { inverse, enter, leave, octant: signs(direction) }
     }
 }
 
@@ -76,7 +76,7 @@ pub(in crate::trace) fn largest(magnitudes: __m128) -> __m128 {
 /// The axes whose lanes are negative or all ones, a bit each.
 #[inline]
 #[target_feature(enable = "avx2")]
-pub(in crate::trace) fn lanes(v: __m128) -> usize {
+pub(in crate::trace) fn signs(v: __m128) -> usize {
     _mm_movemask_ps(v) as usize & 7
 }
 
