@@ -2,6 +2,7 @@
 
 use super::intersect::{Crossing, crossing, locate};
 use super::prepare::Shear;
+use super::sift::Sifted;
 use crate::geometry::Hit;
 
 /// Triangles in a block.
@@ -17,70 +18,6 @@ pub(super) struct Block {
     /// By corner and axis.
     corners: [[Lanes; 3]; 3],
     triangles: [u32; LANES],
-}
-
-/// The lanes of a block that a ray may hit in the interval that was asked for.
-#[derive(Clone, Copy)]
-pub(super) struct Filtered {
-    pub(super) maybe: u32,
-    /// Those of them that its line crosses for certain.
-    pub(super) surely: u32,
-    /// Those that are hit in the interval for certain.
-    pub(super) inside: u32,
-    /// No hit of a lane comes before. Where hits are located in vectors, that is said of located lanes only.
-    pub(super) earliest: Lanes,
-    /// Those of which it is known where they are hit: at their earliest `t` and these `u` and `v`.
-    #[cfg_attr(
-        not(any(test, target_arch = "x86_64")),
-        expect(dead_code, reason = "there are none")
-    )]
-    pub(super) located: u32,
-    #[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "none is located"))]
-    pub(super) weights: [Lanes; 2],
-}
-
-impl Filtered {
-    /// No lane may be hit.
-    pub(super) const NONE: Self = Self {
-        maybe: 0,
-        surely: 0,
-        inside: 0,
-        earliest: [0.0; LANES],
-        located: 0,
-        weights: [[0.0; LANES]; 2],
-    };
-
-    /// Whether the line crosses the triangle for certain.
-    #[inline(always)]
-    pub(super) fn surely(&self, lane: usize) -> bool {
-        self.surely >> lane & 1 == 1
-    }
-
-    /// The lanes that are hit in the interval for certain.
-    #[inline(always)]
-    pub(super) fn inside(&self) -> impl Iterator<Item = usize> + use<> {
-        let inside = self.inside;
-        (0..LANES).filter(move |lane| inside >> lane & 1 == 1)
-    }
-
-    /// Takes out the lane that may be hit first, if that is not after `until`.
-    #[inline(always)]
-    pub(super) fn next(&mut self, until: f32) -> Option<usize> {
-        while self.maybe != 0 {
-            let mut first = self.maybe.trailing_zeros() as usize & (LANES - 1);
-            let mut rest = self.maybe & (self.maybe - 1);
-            while rest != 0 {
-                let other = rest.trailing_zeros() as usize & (LANES - 1);
-                rest &= rest - 1;
-                first = if self.earliest[other] < self.earliest[first] { other } else { first };
-            }
-            self.maybe &= !(1 << first);
-            if self.earliest[first] <= until {
-                return Some(first);
-            }
-        }
-        None
-    }
 }
 
 /// Marks the last block of a leaf, in its last index.
@@ -135,9 +72,8 @@ impl Block {
 
     /// What is known of the lanes without a test: nothing.
     #[inline(always)]
-    pub(super) fn unknown(&self) -> Filtered {
-        let maybe = (1 << self.places().count()) - 1;
-        Filtered { maybe, earliest: [f32::NEG_INFINITY; LANES], ..Filtered::NONE }
+    pub(super) fn unknown(&self) -> Sifted {
+        Sifted { maybe: (1 << self.places().count()) - 1, surely: 0, inside: 0 }
     }
 
     /// The index of the triangle in a lane.

@@ -58,6 +58,8 @@ mod filter;
 mod grid;
 mod hits;
 mod intersect;
+#[cfg(target_arch = "x86_64")]
+mod lane;
 mod leaves;
 mod lists;
 #[cfg(target_arch = "x86_64")]

@@ -1,12 +1,14 @@
 //! The arithmetic of a traversal with NEON: boxes and triangles eight at once.
 
-use super::block::{Block, Filtered};
+use super::block::Block;
 use super::prepare::{Shear, Slabs};
 use super::sift::{Sifted, sheared, sift};
 use super::simd::{Neon, Simd};
 use super::stack::Stack;
 use super::step::{Met, nearer_of_two};
+use super::traverse::Visitor;
 use super::vector::{Arithmetic, Eight, Mask, Numbers, Vector};
+use super::walk::test_blocks;
 use super::wide::{Child, Wide};
 use crate::geometry::{Hit, Ray};
 
@@ -124,21 +126,20 @@ impl Simd for Neon {
     }
 
     #[inline(always)]
-    fn filter<P>(
+    fn filter(
         self,
         block: &Block,
         ray: &ShearLanes,
         [t_min, t_max]: [f32; 2],
         _: bool,
-    ) -> Option<Filtered> {
+    ) -> Option<Sifted> {
         let corners = block.corners().each_ref().map(|rows| {
             let corner = ray.shear.axes.map(|axis| self.load(&rows[axis]));
             sheared(corner, &ray.origin, &ray.slope)
         });
         let interval = [self.all(t_min), self.all(t_max)];
-        let (Sifted { maybe, surely, inside }, early) = sift(&corners, ray.t_per_z, interval);
-        let earliest = early.numbers().0;
-        (maybe != 0).then_some(Filtered { maybe, surely, inside, earliest, ..Filtered::NONE })
+        let sifted = sift(&corners, ray.t_per_z, interval);
+        (sifted.maybe != 0).then_some(sifted)
     }
 
     #[inline(always)]
@@ -146,9 +147,20 @@ impl Simd for Neon {
         self,
         block: &Block,
         lane: usize,
-        filtered: &Filtered,
+        surely: bool,
         (_, ray): (&Ray, &ShearLanes),
     ) -> Option<Hit> {
-        block.hit(lane, filtered.surely(lane), &ray.shear)
+        block.hit(lane, surely, &ray.shear)
+    }
+
+    #[inline(never)]
+    fn test_blocks<V: Visitor>(
+        self,
+        blocks: &[Block],
+        ray: (&Ray, &ShearLanes),
+        until: f32,
+        visitor: &mut V,
+    ) -> f32 {
+        test_blocks(self, blocks, ray, until, visitor)
     }
 }

@@ -3,12 +3,21 @@
 use super::vector::{Mask, Vector};
 
 /// Lanes whose ray may hit its triangle in the interval that was asked for, a bit each.
+#[derive(Clone, Copy)]
 pub(super) struct Sifted {
     pub(super) maybe: u32,
     /// Those whose line crosses for certain, wherever.
     pub(super) surely: u32,
     /// Those that are hit in the interval for certain.
     pub(super) inside: u32,
+}
+
+impl Sifted {
+    /// Whether the line of a lane crosses for certain.
+    #[inline(always)]
+    pub(super) fn surely(&self, lane: usize) -> bool {
+        self.surely >> lane & 1 == 1
+    }
 }
 
 /// A corner in ray space, with the arithmetic of [`Shear`](super::prepare::Shear).
@@ -25,12 +34,12 @@ fn edge<V: Vector>(p: [V; 3], q: [V; 3]) -> V {
 
 /// The lanes whose edge functions do not differ in sign, with the arithmetic of
 /// [`crossing`](super::intersect::crossing), but for those that are hit before or after the interval
-/// for certain; and a `t` that none of their hits comes before. Corners are in ray space.
+/// for certain. Corners are in ray space.
 #[inline(always)]
-pub(super) fn sift<V: Vector>(corners: &[[V; 3]; 3], t_per_z: V, interval: [V; 2]) -> (Sifted, V) {
+pub(super) fn sift<V: Vector>(corners: &[[V; 3]; 3], t_per_z: V, interval: [V; 2]) -> Sifted {
     let crossed = crossed(corners);
     if crossed.maybe.bits() == 0 {
-        return (Sifted { maybe: 0, surely: 0, inside: 0 }, t_per_z);
+        return Sifted { maybe: 0, surely: 0, inside: 0 };
     }
     crossed_between(corners, &crossed, t_per_z, interval)
 }
@@ -63,13 +72,13 @@ pub(super) fn crossed_between<V: Vector>(
     crossed: &Crossed<V>,
     t_per_z: V,
     [t_min, t_max]: [V; 2],
-) -> (Sifted, V) {
+) -> Sifted {
     let Crossed { edges, maybe, surely } = crossed;
     let (early, late) = times(corners, edges, t_per_z);
     let outside = late.is_less(t_min).or(t_max.is_less(early));
     let inside = t_min.is_at_most(early).and(late.is_at_most(t_max)).and(*surely);
     let maybe = maybe.and_not(outside).bits();
-    (Sifted { maybe, surely: surely.bits(), inside: inside.bits() & maybe }, early)
+    Sifted { maybe, surely: surely.bits(), inside: inside.bits() & maybe }
 }
 
 /// Between which `t` the line of a ray crosses triangles, given their corners in ray space and

@@ -4,9 +4,6 @@
 //! depends on what it read last. Rays that go the same way wait together, as a packet. Where they
 //! go their own ways, the others are served while one waits.
 
-#[cfg(target_arch = "x86_64")]
-use std::marker::PhantomData;
-
 use super::hits::Counted;
 #[cfg(target_arch = "x86_64")]
 use super::packet;
@@ -174,14 +171,10 @@ fn go_the_same_way(rays: &[Ray]) -> bool {
     2 * pairs.clone().filter(is_alike).count() >= pairs.count()
 }
 
-/// What a traversal is for whose rays take turns: it has functions of its own.
-#[cfg(target_arch = "x86_64")]
-struct Turns<V>(PhantomData<V>);
-
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
 fn stream_avx2<V: Visitor>(
-    simd: Avx2<Turns<V>>,
+    simd: Avx2,
     trip: &Trip,
     rays: &[Ray],
     begin: impl FnMut(usize, &Ray) -> Option<V>,
@@ -193,7 +186,7 @@ fn stream_avx2<V: Visitor>(
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,lzcnt,popcnt")]
 fn stream_avx512<V: Visitor>(
-    simd: Avx512<Turns<V>>,
+    simd: Avx512,
     trip: &Trip,
     rays: &[Ray],
     begin: impl FnMut(usize, &Ray) -> Option<V>,

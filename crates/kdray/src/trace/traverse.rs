@@ -83,13 +83,13 @@ fn traverse_plain(trip: &Trip, ray: &Ray, visitor: &mut impl Visitor) {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
-fn traverse_avx2<V: Visitor>(simd: Avx2<V>, trip: &Trip, ray: &Ray, visitor: &mut V) {
+fn traverse_avx2<V: Visitor>(simd: Avx2, trip: &Trip, ray: &Ray, visitor: &mut V) {
     traverse_with(simd, trip, ray, visitor);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,lzcnt,popcnt")]
-fn traverse_avx512<V: Visitor>(simd: Avx512<V>, trip: &Trip, ray: &Ray, visitor: &mut V) {
+fn traverse_avx512<V: Visitor>(simd: Avx512, trip: &Trip, ray: &Ray, visitor: &mut V) {
     traverse_with(simd, trip, ray, visitor);
 }
 

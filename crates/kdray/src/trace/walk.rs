@@ -5,6 +5,7 @@ use super::prepare::lesser;
 use super::simd::Simd;
 use super::stack::Stack;
 use super::traverse::{ENOUGH, Visitor};
+use super::vector::lanes;
 use super::wide::{Child, Layout};
 use crate::geometry::Ray;
 
@@ -137,13 +138,10 @@ impl<'a, S: Simd> Walk<'a, S> {
     }
 }
 
-/// Where the first block of a leaf is tested, a place of [`Simd::filter`].
-struct First;
-
-/// Where the others are.
-struct More;
-
 /// Shows the visitor the hits of a leaf; gives the `t` up to which there is more to see.
+///
+/// Few leaves have more than one block. In a loop with the first one the compiler would make vectors of the
+/// ray before it, more than there are registers, so the others are tested elsewhere.
 #[inline(always)]
 fn test_leaf<S: Simd, V: Visitor>(
     simd: S,
@@ -152,17 +150,16 @@ fn test_leaf<S: Simd, V: Visitor>(
     until: f32,
     visitor: &mut V,
 ) -> f32 {
-    let until = test_block::<First, _, _>(simd, &blocks[0], ray, until, visitor);
+    let until = test_block(simd, &blocks[0], ray, until, visitor);
     if is_one || blocks[0].is_last() || until == ENOUGH {
         return until;
     }
-    test_more(simd, &blocks[1..], ray, until, visitor)
+    simd.test_blocks(&blocks[1..], ray, until, visitor)
 }
 
-/// The same of the blocks after the first. Few leaves have any; in a loop with the first one the compiler
-/// would make vectors of the ray before it, more than there are registers.
-#[inline(never)]
-fn test_more<S: Simd, V: Visitor>(
+/// Shows the visitor the hits of blocks up to the last of a leaf; gives the `t` up to which there is more.
+#[inline(always)]
+pub(super) fn test_blocks<S: Simd, V: Visitor>(
     simd: S,
     blocks: &[Block],
     ray: (&Ray, &S::Shear),
@@ -170,7 +167,7 @@ fn test_more<S: Simd, V: Visitor>(
     visitor: &mut V,
 ) -> f32 {
     for block in blocks {
-        until = test_block::<More, _, _>(simd, block, ray, until, visitor);
+        until = test_block(simd, block, ray, until, visitor);
         if block.is_last() || until == ENOUGH {
             break;
         }
@@ -180,7 +177,7 @@ fn test_more<S: Simd, V: Visitor>(
 
 /// Shows the visitor the hits of a block.
 #[inline(always)]
-fn test_block<P, S: Simd, V: Visitor>(
+fn test_block<S: Simd, V: Visitor>(
     simd: S,
     block: &Block,
     (ray, shear): (&Ray, &S::Shear),
@@ -188,23 +185,23 @@ fn test_block<P, S: Simd, V: Visitor>(
     visitor: &mut V,
 ) -> f32 {
     visitor.test();
-    let Some(mut filtered) = simd.filter::<P>(block, shear, [ray.t_min, until], V::ASKS_WHETHER)
-    else {
+    let interval = [ray.t_min, until];
+    let Some(sifted) = simd.filter(block, shear, interval, V::ASKS_WHETHER) else {
         return until;
     };
     if V::ASKS_WHETHER {
-        for lane in filtered.inside() {
+        for lane in lanes(sifted.inside) {
             until = lesser(until, visitor.inside(block.index(lane)));
             if until == ENOUGH {
                 return ENOUGH;
             }
         }
     }
-    while let Some(lane) = simd.next(&mut filtered, until) {
+    for lane in lanes(sifted.maybe) {
         if visitor.knows(block.index(lane)) {
             continue;
         }
-        let Some(hit) = simd.hit(block, lane, &filtered, (ray, shear)) else { continue };
+        let Some(hit) = simd.hit(block, lane, sifted.surely(lane), (ray, shear)) else { continue };
         until = lesser(until, visitor.hit(hit));
         if until == ENOUGH {
             return ENOUGH;

@@ -90,7 +90,8 @@ impl<L: Vector> Boxes<L> {
     #[target_feature(enable = "avx2,fma,popcnt")]
     pub(super) fn push(&self, wide: &Wide, node: Child, until: f32, stack: &mut Stack) {
         let (met, enter) = self.bounds.meet(wide, until);
-        let (places, count) = far_to_near_avx2::<L>(wide, self.octant, met.0);
+        // SAFETY: the processor has AVX2.
+        let (places, count) = unsafe { far_to_near_avx2(wide, self.octant, met.0) };
         let enter = _mm256_permutevar8x32_ps(enter.0, places);
         let places = _mm256_and_si256(places, _mm256_set1_epi32(7));
         let children = _mm256_or_si256(places, _mm256_set1_epi32((node.0 << 3) as i32));

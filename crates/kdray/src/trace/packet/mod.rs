@@ -24,8 +24,8 @@ use triangles::{Triangles, Where};
 const FEW: u32 = 3;
 
 /// Rays on their way together.
-struct Packet<'a, V, L: Vector> {
-    simd: Avx2<V>,
+struct Packet<'a, L: Vector> {
+    simd: Avx2,
     trip: &'a Trip,
     rays: &'a [Ray],
     lanes: &'a Rays<L>,
@@ -92,9 +92,9 @@ impl<L: Vector> Rays<L> {
     }
 }
 
-impl<V: Visitor, L: Vector> Packet<'_, V, L> {
+impl<L: Vector> Packet<'_, L> {
     #[inline(always)]
-    fn traverse(&mut self, visitors: &mut [Option<V>]) {
+    fn traverse<V: Visitor>(&mut self, visitors: &mut [Option<V>]) {
         let wides = &self.trip.layout.wides[..];
         let (mut stack, mut child, mut mask) = (Stack::new(), Child(0), (1_u32 << L::LANES) - 1);
         let mut last = self.last();
@@ -138,7 +138,7 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
 
     /// Shows what is below `child` to the rays of `mask`, one after the other.
     #[inline(always)]
-    fn go_on_alone(&mut self, child: Child, mask: u32, visitors: &mut [Option<V>]) {
+    fn go_on_alone<V: Visitor>(&mut self, child: Child, mask: u32, visitors: &mut [Option<V>]) {
         let Trip { layout, reach, .. } = self.trip;
         for lane in lanes(mask) {
             let Some(visitor) = &mut visitors[lane] else { continue };
@@ -150,7 +150,7 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
 
     /// Shows the triangles of a leaf to the rays of `mask`.
     #[inline(always)]
-    fn test_leaf(
+    fn test_leaf<V: Visitor>(
         &mut self,
         (blocks, is_one): (&[Block], bool),
         triangles: &Triangles<L>,
@@ -168,7 +168,7 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
     }
 
     #[inline(always)]
-    fn test_triangle(
+    fn test_triangle<V: Visitor>(
         &mut self,
         (block, place): (&Block, usize),
         triangles: &Triangles<L>,
@@ -197,7 +197,7 @@ impl<V: Visitor, L: Vector> Packet<'_, V, L> {
 
     /// Shows the hits of a triangle to the rays of a mask that may hit it; some do so for certain.
     #[inline(always)]
-    fn show_hits(
+    fn show_hits<V: Visitor>(
         &mut self,
         (block, place): (&Block, usize),
         located: &Where,

@@ -51,8 +51,7 @@ impl<L: Vector> Triangles<L> {
             let point = by_axis!(|axis| until.all(corner[self.axes[axis]][place]));
             sheared(point, &self.origin, &self.slope)
         });
-        let (sifted, _) = sift(&corners, self.t_per_z.rounded(), [self.t_min, until]);
-        sifted
+        sift(&corners, self.t_per_z.rounded(), [self.t_min, until])
     }
 
     /// Where all rays cross the triangle.

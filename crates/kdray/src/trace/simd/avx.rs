@@ -1,50 +1,41 @@
 //! Eight boxes and triangles at once, with AVX2 or AVX-512.
 
-use std::marker::PhantomData;
-
 use super::{HasAvx2, HasAvx512, Simd};
 use crate::geometry::{Hit, Ray};
-use crate::trace::block::{Block, Filtered};
+use crate::trace::block::Block;
 use crate::trace::block_ray::BlockRay;
+use crate::trace::sift::Sifted;
 use crate::trace::stack::Stack;
 use crate::trace::step::{self, Lanes};
+use crate::trace::traverse::Visitor;
+use crate::trace::walk::test_blocks;
 use crate::trace::wide::{Child, Wide};
 
-/// For processors with AVX2. `V` is what a traversal is for: each has functions of its own, so that
-/// the compiler makes them part of its loop.
-pub(in crate::trace) struct Avx2<V> {
+/// For processors with AVX2.
+#[derive(Clone, Copy)]
+pub(in crate::trace) struct Avx2 {
     /// That the processor has it.
     _proof: HasAvx2,
-    purpose: PhantomData<V>,
 }
 
 /// For processors with AVX-512: the same on as many lanes, with twice the registers.
-pub(in crate::trace) struct Avx512<V> {
+#[derive(Clone, Copy)]
+pub(in crate::trace) struct Avx512 {
     /// That the processor has it.
     _proof: HasAvx512,
-    purpose: PhantomData<V>,
 }
 
 /// What both have, with the steps of each.
 macro_rules! simd {
-    ($simd:ident, $proof:ident, $nearest:ident, $push:ident) => {
-        impl<V> From<$proof> for $simd<V> {
+    ($simd:ident, $proof:ident, $features:literal, $nearest:ident, $push:ident) => {
+        impl From<$proof> for $simd {
             #[inline(always)]
             fn from(proof: $proof) -> Self {
-                Self { _proof: proof, purpose: PhantomData }
+                Self { _proof: proof }
             }
         }
 
-        impl<V> Clone for $simd<V> {
-            #[inline(always)]
-            fn clone(&self) -> Self {
-                *self
-            }
-        }
-
-        impl<V> Copy for $simd<V> {}
-
-        impl<V> Simd for $simd<V> {
+        impl Simd for $simd {
             type Slabs = Lanes;
             type Shear = BlockRay;
 
@@ -69,31 +60,25 @@ macro_rules! simd {
                 stack: &mut Stack,
             ) -> Option<Child> {
                 // SAFETY: as above.
-                unsafe { step::$nearest::<Self>(wide, slabs, interval, stack) }
+                unsafe { step::$nearest(wide, slabs, interval, stack) }
             }
 
             #[inline(always)]
             fn push(self, wide: &Wide, slabs: &Lanes, interval: [f32; 2], stack: &mut Stack) {
                 // SAFETY: as above.
-                unsafe { step::$push::<Self>(wide, slabs, interval, stack) }
+                unsafe { step::$push(wide, slabs, interval, stack) }
             }
 
             #[inline(always)]
-            fn filter<P>(
+            fn filter(
                 self,
                 block: &Block,
                 shear: &BlockRay,
                 interval: [f32; 2],
                 whether: bool,
-            ) -> Option<Filtered> {
+            ) -> Option<Sifted> {
                 // SAFETY: as above.
-                unsafe { block.filter_avx2::<(Self, P)>(shear, interval, whether) }
-            }
-
-            #[inline(always)]
-            fn next(self, filtered: &mut Filtered, until: f32) -> Option<usize> {
-                // SAFETY: as above.
-                unsafe { filtered.next_avx2::<Self>(until) }
+                unsafe { block.filter_avx2(shear, interval, whether) }
             }
 
             #[inline(always)]
@@ -101,14 +86,44 @@ macro_rules! simd {
                 self,
                 block: &Block,
                 lane: usize,
-                filtered: &Filtered,
-                (ray, _): (&Ray, &BlockRay),
+                surely: bool,
+                ray: (&Ray, &BlockRay),
             ) -> Option<Hit> {
-                filtered.hit(block, lane, ray)
+                // SAFETY: as above.
+                unsafe { block.hit_avx2(lane, surely, ray) }
+            }
+
+            #[inline(always)]
+            fn test_blocks<V: Visitor>(
+                self,
+                blocks: &[Block],
+                ray: (&Ray, &BlockRay),
+                until: f32,
+                visitor: &mut V,
+            ) -> f32 {
+                #[inline(never)]
+                #[target_feature(enable = $features)]
+                fn apart<V: Visitor>(
+                    simd: $simd,
+                    blocks: &[Block],
+                    ray: (&Ray, &BlockRay),
+                    until: f32,
+                    visitor: &mut V,
+                ) -> f32 {
+                    test_blocks(simd, blocks, ray, until, visitor)
+                }
+                // SAFETY: as above.
+                unsafe { apart(self, blocks, ray, until, visitor) }
             }
         }
     };
 }
 
-simd!(Avx2, HasAvx2, nearest_avx2, push_avx2);
-simd!(Avx512, HasAvx512, nearest_avx512, push_avx512);
+simd!(Avx2, HasAvx2, "avx2,fma,bmi1,lzcnt,popcnt", nearest_avx2, push_avx2);
+simd!(
+    Avx512,
+    HasAvx512,
+    "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,lzcnt,popcnt",
+    nearest_avx512,
+    push_avx512
+);

@@ -4,10 +4,13 @@
 #[cfg(target_arch = "x86_64")]
 mod avx;
 
-use super::block::{Block, Filtered};
+use super::block::Block;
 use super::prepare::{Shear, Slabs};
+use super::sift::Sifted;
 use super::stack::Stack;
 use super::step;
+use super::traverse::Visitor;
+use super::walk::test_blocks;
 use super::wide::{Child, Wide};
 use crate::geometry::{Hit, Ray};
 #[cfg(target_arch = "x86_64")]
@@ -37,30 +40,32 @@ pub(super) trait Simd: Copy {
     fn push(self, wide: &Wide, slabs: &Self::Slabs, interval: [f32; 2], stack: &mut Stack);
 
     /// The triangles of a block that may be hit in the interval, if any may; `whether` it is enough to know
-    /// that they are, and not where. `P` is the place that asks: each has functions of its own, so that the
-    /// compiler makes them part of it.
-    fn filter<P>(
+    /// that they are, and not where.
+    fn filter(
         self,
         block: &Block,
         shear: &Self::Shear,
         interval: [f32; 2],
         whether: bool,
-    ) -> Option<Filtered>;
+    ) -> Option<Sifted>;
 
-    /// Takes out the lane that may be hit first, if that is not after `until`.
-    #[inline(always)]
-    fn next(self, filtered: &mut Filtered, until: f32) -> Option<usize> {
-        filtered.next(until)
-    }
-
-    /// The hit in a lane that was taken out, if there is one.
+    /// The hit in a lane, at any `t`, if there is one. `surely` says that the line crosses its triangle.
     fn hit(
         self,
         block: &Block,
         lane: usize,
-        filtered: &Filtered,
+        surely: bool,
         ray: (&Ray, &Self::Shear),
     ) -> Option<Hit>;
+
+    /// [`test_blocks`] in a function of its own.
+    fn test_blocks<V: Visitor>(
+        self,
+        blocks: &[Block],
+        ray: (&Ray, &Self::Shear),
+        until: f32,
+        visitor: &mut V,
+    ) -> f32;
 }
 
 /// For every processor.
@@ -98,7 +103,7 @@ impl Simd for Plain {
     }
 
     #[inline(always)]
-    fn filter<P>(self, block: &Block, _: &Shear, _: [f32; 2], _: bool) -> Option<Filtered> {
+    fn filter(self, block: &Block, _: &Shear, _: [f32; 2], _: bool) -> Option<Sifted> {
         Some(block.unknown())
     }
 
@@ -107,10 +112,21 @@ impl Simd for Plain {
         self,
         block: &Block,
         lane: usize,
-        _: &Filtered,
+        surely: bool,
         (_, shear): (&Ray, &Shear),
     ) -> Option<Hit> {
-        block.hit(lane, false, shear)
+        block.hit(lane, surely, shear)
+    }
+
+    #[inline(never)]
+    fn test_blocks<V: Visitor>(
+        self,
+        blocks: &[Block],
+        ray: (&Ray, &Shear),
+        until: f32,
+        visitor: &mut V,
+    ) -> f32 {
+        test_blocks(self, blocks, ray, until, visitor)
     }
 }
 
@@ -228,8 +244,8 @@ mod tests {
     use crate::trace::noise::noise;
 
     /// Filters blocks: what is said of a lane is true of its hit. Gives how many lanes may be hit,
-    /// and a hash of everything that was said. Some ways locate hits in vectors.
-    fn filters_what_is_hit(simd: impl Simd, locates: bool, whether: bool) -> (u32, u32) {
+    /// and a hash of everything that was said.
+    fn filters_what_is_hit(simd: impl Simd, whether: bool) -> (u32, u32) {
         let mut state = 5;
         let (mut maybes, mut hash) = (0, 0_u32);
         for round in 0..20_000 {
@@ -247,9 +263,8 @@ mod tests {
             let t_max = if round % 2 == 0 { t_max } else { f32::INFINITY };
             let ray = Ray { origin, direction, t_min, t_max };
             let shear = simd.shear(&ray);
-            let said = simd.filter::<()>(&block, &shear, [t_min, t_max], whether);
-            let mut said = said.unwrap_or(Filtered::NONE);
-            let mut hits = 0;
+            let said = simd.filter(&block, &shear, [t_min, t_max], whether);
+            let said = said.unwrap_or(Sifted { maybe: 0, surely: 0, inside: 0 });
             for lane in 0..8 {
                 let [maybe, surely, inside] =
                     [said.maybe, said.surely, said.inside].map(|bits| bits >> lane & 1 == 1);
@@ -259,12 +274,8 @@ mod tests {
                 assert!(maybe || !is_inside, "{case}");
                 assert!(hit.is_some() || !(maybe && surely), "{case}");
                 assert!(is_inside || !(maybe && inside), "{case}");
-                let is_said = !locates || said.located >> lane & 1 == 1;
-                let is_early = said.earliest[lane] <= hit.map_or(0.0, |hit| hit.t);
-                assert!(!(is_inside && is_said) || is_early, "{case}");
-                hits |= u32::from(is_inside) << lane;
                 if maybe {
-                    let found = simd.hit(&block, lane, &said, (&ray, &shear));
+                    let found = simd.hit(&block, lane, surely, (&ray, &shear));
                     let found = found.filter(|_| lane < used);
                     assert_eq!(found, hit, "{case}");
                     let bits = found.map_or(0, |hit| hit.t.to_bits() ^ hit.u.to_bits());
@@ -275,55 +286,32 @@ mod tests {
             for bits in [said.maybe, said.surely, said.inside] {
                 hash = hash.wrapping_mul(0x0100_0193) ^ (bits & said.maybe);
             }
-            takes_out_the_first(simd, locates, &mut said, (hits, t_max));
         }
         (maybes, hash)
-    }
-
-    /// All lanes come that are hit up to `until`; those of which it is known where come in order.
-    fn takes_out_the_first(
-        simd: impl Simd,
-        locates: bool,
-        said: &mut Filtered,
-        (hits, until): (u32, f32),
-    ) {
-        let mut taken = Vec::new();
-        while let Some(lane) = simd.next(said, until) {
-            taken.push(lane);
-        }
-        let all = taken.iter().fold(0, |all, lane| all | 1 << lane);
-        assert_eq!(hits & !all, 0, "{taken:?}");
-        assert_eq!(taken.len(), u32::count_ones(all) as usize, "{taken:?}");
-        taken.retain(|lane| !locates || said.located >> lane & 1 == 1);
-        assert!(taken.is_sorted_by_key(|lane| said.earliest[*lane]), "{taken:?}");
     }
 
     #[test]
     fn filters_say_what_is_so_and_the_same_on_every_processor() {
         for whether in [false, true] {
-            filters_what_is_hit(Plain, false, whether);
+            filters_what_is_hit(Plain, whether);
             #[cfg(target_arch = "x86_64")]
             for said in [
-                Best::detect()
-                    .avx2()
-                    .map(|it| filters_what_is_hit(Avx2::<()>::from(it), true, whether)),
-                Best::detect()
-                    .avx512()
-                    .map(|it| filters_what_is_hit(Avx512::<()>::from(it), true, whether)),
+                Best::detect().avx2().map(|it| filters_what_is_hit(Avx2::from(it), whether)),
+                Best::detect().avx512().map(|it| filters_what_is_hit(Avx512::from(it), whether)),
             ] {
                 match said {
-                    Some(said) => assert_eq!(said, SAID),
+                    Some(said) => assert_eq!(said, SAID[usize::from(whether)]),
                     None => println!("this processor has not all of AVX2 and AVX-512"),
                 }
             }
             #[cfg(target_arch = "aarch64")]
             if let Best::Neon(neon) = Best::detect() {
-                filters_what_is_hit(neon, false, whether);
+                filters_what_is_hit(neon, whether);
             }
         }
     }
 
-    /// What the first processor said.
+    /// What the first processor said; and where it is enough to know whether.
     #[cfg(target_arch = "x86_64")]
-    const SAID: (u32, u32) = (26_159, 2_902_190_403);
+    const SAID: [(u32, u32); 2] = [(26_233, 591_711_200), (26_159, 2_902_190_403)];
 }

@@ -22,7 +22,7 @@ use crate::geometry::Ray;
 pub(in crate::trace) use crate::trace::eights::by_axis;
 
 #[cfg(target_arch = "x86_64")]
-pub(in crate::trace) use eight::{Eight, PreciseEight};
+pub(in crate::trace) use eight::Eight;
 #[cfg(target_arch = "x86_64")]
 pub(in crate::trace) use four::Four;
 #[cfg(target_arch = "aarch64")]
@@ -100,7 +100,6 @@ pub(in crate::trace) trait Mask: Copy {
 }
 
 /// The lanes of a mask.
-#[cfg(target_arch = "x86_64")]
 #[inline(always)]
 pub(in crate::trace) fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {

@@ -18,7 +18,7 @@ pub(super) use self::piles::Kept;
 use self::piles::Piles;
 use self::ready::{Ready, meet};
 use super::block_ray::BlockRay;
-use super::filter::unknown_hit;
+use super::lane::unknown_hit;
 use super::located::Located;
 use super::sift::Sifted;
 use super::simd::HasAvx2;
