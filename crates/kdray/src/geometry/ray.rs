@@ -20,8 +20,8 @@ pub struct Ray {
 }
 
 /// Between these is the largest component of a direction.
-const LEAST: f32 = 1e-21;
-const MOST: f32 = 1e21;
+pub(crate) const LEAST: f32 = 1e-21;
+pub(crate) const MOST: f32 = 1e21;
 
 impl Ray {
     /// The half-line from `origin` on: `t` from zero to infinity.

@@ -159,8 +159,6 @@ impl Tracer {
     /// Shows what lies along the ray from front to back.
     #[inline]
     pub(super) fn visit(&self, ray: &Ray, visitor: &mut impl Visitor) {
-        if ray.is_valid() {
-            traverse(&self.trip, ray, visitor);
-        }
+        traverse(&self.trip, ray, visitor);
     }
 }

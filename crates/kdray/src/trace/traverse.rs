@@ -56,7 +56,7 @@ pub(super) struct Trip {
 /// No `t` is as low: the visitor has seen enough.
 pub(super) const ENOUGH: f32 = f32::NEG_INFINITY;
 
-/// Shows `visitor` what the ray comes to, leaf by leaf from front to back.
+/// Shows `visitor` what the ray comes to, leaf by leaf from front to back: nothing if it is not valid.
 #[inline]
 pub(super) fn traverse<V: Visitor>(trip: &Trip, ray: &Ray, visitor: &mut V) {
     #[cfg(target_arch = "x86_64")]
@@ -95,8 +95,10 @@ fn traverse_avx512<V: Visitor>(simd: Avx512, trip: &Trip, ray: &Ray, visitor: &m
 
 #[inline(always)]
 fn traverse_with(simd: impl Simd, trip: &Trip, ray: &Ray, visitor: &mut impl Visitor) {
-    let root = (Child(0), ray.t_max);
-    visit_below(simd, &trip.layout, (ray, trip.reach), root, visitor);
+    if simd.is_valid(ray) {
+        let root = (Child(0), ray.t_max);
+        visit_below(simd, &trip.layout, (ray, trip.reach), root, visitor);
+    }
 }
 
 #[cfg(test)]

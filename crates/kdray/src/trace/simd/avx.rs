@@ -40,8 +40,14 @@ macro_rules! simd {
             type Shear = BlockRay;
 
             #[inline(always)]
-            fn slabs(self, ray: &Ray, reach: f32) -> Lanes {
+            fn is_valid(self, ray: &Ray) -> bool {
                 // SAFETY: this exists only where the processor has the instructions. The same below.
+                unsafe { step::is_valid(ray) }
+            }
+
+            #[inline(always)]
+            fn slabs(self, ray: &Ray, reach: f32) -> Lanes {
+                // SAFETY: as above.
                 unsafe { Lanes::new(ray, reach) }
             }
 

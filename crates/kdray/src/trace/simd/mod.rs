@@ -23,6 +23,12 @@ pub(super) trait Simd: Copy {
     /// A ray ready for triangles.
     type Shear;
 
+    /// [`Ray::is_valid`].
+    #[inline(always)]
+    fn is_valid(self, ray: &Ray) -> bool {
+        ray.is_valid()
+    }
+
     fn slabs(self, ray: &Ray, reach: f32) -> Self::Slabs;
 
     fn shear(self, ray: &Ray) -> Self::Shear;

@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use crate::geometry::Ray;
+use crate::geometry::{LEAST, MOST, Ray};
 use crate::trace::prepare::{SMALLEST, THICKNESS};
 
 /// [`Slabs`](crate::trace::prepare::Slabs) with an axis a lane, and a number of no consequence.
@@ -36,6 +36,46 @@ impl Axes {
         let (enter, leave) = (_mm_add_ps(offset, thick), _mm_sub_ps(offset, thick));
         Self { inverse, enter, leave, octant: signs(direction) }
     }
+}
+
+/// By lane whether a magnitude is more than another, as integers: what is not a number is more than any.
+///
+/// # Safety
+///
+/// The processor has AVX2.
+#[inline(always)]
+unsafe fn is_more(magnitudes: __m128, than: f32) -> __m128i {
+    // SAFETY: the same.
+    unsafe { _mm_cmpgt_epi32(_mm_castps_si128(magnitudes), _mm_set1_epi32(than.to_bits() as i32)) }
+}
+
+/// The same the other way round.
+///
+/// # Safety
+///
+/// The processor has AVX2.
+#[inline(always)]
+unsafe fn is_less(magnitudes: __m128, than: f32) -> __m128i {
+    // SAFETY: the same.
+    unsafe { _mm_cmpgt_epi32(_mm_set1_epi32(than.to_bits() as i32), _mm_castps_si128(magnitudes)) }
+}
+
+/// [`Ray::is_valid`], with what [`Axes::new`] works out anyway.
+///
+/// # Safety
+///
+/// The processor has AVX2.
+#[inline(always)]
+pub(in crate::trace) unsafe fn is_valid(ray: &Ray) -> bool {
+    // SAFETY: the same.
+    let beyond = unsafe {
+        let [origin, direction] = halves(ray);
+        let [far, long] = [largest(magnitude(origin)), largest(magnitude(direction))];
+        let [too_far, too_long] = [is_more(far, f32::MAX), is_more(long, MOST)];
+        let beyond = _mm_or_si128(_mm_or_si128(too_far, too_long), is_less(long, LEAST));
+        signs(_mm_castsi128_ps(beyond))
+    };
+    beyond == 0 && ray.t_min <= ray.t_max
 }
 
 /// A direction whose small components are larger.
@@ -83,8 +123,36 @@ pub(in crate::trace) fn signs(v: __m128) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trace::noise::noise;
     use crate::trace::prepare::Slabs;
     use crate::trace::simd::Best;
+
+    /// The ends of what is valid, and beside them.
+    #[test]
+    fn the_same_rays_are_valid() {
+        if Best::detect().avx2().is_none() {
+            println!("this processor has no AVX2");
+            return;
+        }
+        let of_origin = [0.0, -f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, -f32::NAN];
+        let [below, above] = [LEAST.next_down(), MOST.next_up()];
+        let of_direction = [0.0, -0.0, LEAST, -LEAST, below, 1.0, -MOST, MOST, -above, f32::NAN];
+        let of_t = [0.0, 1.0, f32::INFINITY, f32::NAN, -1.0];
+        let [mut valid, mut state] = [0; 2];
+        for _ in 0..100_000 {
+            let mut pick = |from: &[f32]| from[(from.len() as f32 * noise(&mut state)) as usize];
+            let mut ray = Ray::new([1.0; 3], [(); 3].map(|()| pick(&of_direction)));
+            for axis in 0..3 {
+                ray.origin[axis] =
+                    if pick(&[0.0, 0.0, 1.0]) > 0.0 { pick(&of_origin) } else { 2.0 };
+            }
+            [ray.t_min, ray.t_max] = [pick(&of_t), pick(&of_t)];
+            // SAFETY: the processor has AVX2.
+            assert_eq!(unsafe { is_valid(&ray) }, ray.is_valid(), "{ray:?}");
+            valid += u32::from(ray.is_valid());
+        }
+        assert!((5_000..50_000).contains(&valid), "{valid} were valid");
+    }
 
     #[test]
     fn axes_are_those_of_slabs() {

@@ -9,7 +9,7 @@ use super::prepare::{Slabs, greater, lesser};
 use super::stack::Stack;
 use super::wide::{Child, Wide};
 #[cfg(target_arch = "x86_64")]
-pub(super) use axes::{Axes, halves, largest, magnitude, signs};
+pub(super) use axes::{Axes, halves, is_valid, largest, magnitude, signs};
 #[cfg(target_arch = "x86_64")]
 pub(super) use lanes::{
     Lanes, ROW, ROWS, far_to_near_avx2, nearest_avx2, nearest_avx512, places, push_avx2,
