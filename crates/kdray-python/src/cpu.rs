@@ -108,8 +108,8 @@ impl Asked<'_, '_> {
     /// that see everything.
     fn window(&self) -> Option<usize> {
         let sees_all = self.rays.mask.is_none() && self.rays.except(0..0).is_none();
-        let pays = sees_all && order::pays(self.rays, self.scene.tree.bounds());
-        pays.then(|| self.share(WINDOW))
+        let window = self.share(WINDOW);
+        (sees_all && order::pays(self.rays, window, self.scene)).then_some(window)
     }
 
     /// Rays that a thread takes at a time, whole chunks of them: some times for each thread, so

@@ -55,6 +55,7 @@ mod collapse;
 mod eights;
 #[cfg(target_arch = "x86_64")]
 mod filter;
+mod fullness;
 mod grid;
 mod hits;
 mod intersect;

@@ -4,6 +4,7 @@
 //! depends on what it read last. Rays that go the same way wait together, as a packet. Where they
 //! go their own ways, the others are served while one waits.
 
+use super::fullness::Fullness;
 use super::hits::Counted;
 #[cfg(target_arch = "x86_64")]
 use super::packet;
@@ -33,7 +34,19 @@ pub(super) fn trace<V: Visitor>(
     if go_together(trip, rays) {
         return in_packets(trip, rays, begin, end);
     }
-    if !is_worth_turns(trip, rays) {
+    apart(trip, rays, start_apart(trip, rays), begin, end);
+}
+
+/// Rays that go their own ways: each a step in turn, or one by one. `are_far` says that a ray reads what
+/// the one before has not left in the nearest cache.
+fn apart<V: Visitor>(
+    trip: &Trip,
+    rays: &[Ray],
+    are_far: bool,
+    begin: impl FnMut(usize, &Ray) -> Option<V>,
+    end: impl FnMut(usize, V),
+) {
+    if !is_worth_turns(trip, rays, are_far) {
         return one_by_one(trip, rays, begin, end);
     }
     #[cfg(target_arch = "x86_64")]
@@ -56,8 +69,11 @@ pub(super) fn trace<V: Visitor>(
 /// The most rays of a packet.
 const PACKET: usize = 16;
 
+/// Packets after which it is asked whether they are full enough.
+const TRIED: usize = 4;
+
 /// In packets where rays go together, one by one where not: each finds what it reads in the nearest
-/// cache, where the ray before left it.
+/// cache, where the ray before left it. If the first packets part soon, the others are not made.
 pub(super) fn in_packets<V: Visitor>(
     trip: &Trip,
     rays: &[Ray],
@@ -65,11 +81,17 @@ pub(super) fn in_packets<V: Visitor>(
     mut end: impl FnMut(usize, V),
 ) {
     let mut visitors = [const { None }; PACKET];
-    for (index, rays) in rays.chunks(PACKET).enumerate() {
-        for (lane, (visitor, ray)) in visitors.iter_mut().zip(rays).enumerate() {
+    let mut fullness = Fullness::default();
+    for (index, packet) in rays.chunks(PACKET).enumerate() {
+        if index == TRIED && !fullness.is_enough() {
+            let first = PACKET * index;
+            let begin = |index: usize, ray: &Ray| begin(first + index, ray);
+            return apart(trip, &rays[first..], true, begin, |index, it| end(first + index, it));
+        }
+        for (lane, (visitor, ray)) in visitors.iter_mut().zip(packet).enumerate() {
             *visitor = begin(PACKET * index + lane, ray);
         }
-        sixteen(trip, rays, &mut visitors[..rays.len()]);
+        sixteen(trip, packet, &mut visitors[..packet.len()], &mut fullness);
         for (lane, visitor) in visitors.iter_mut().enumerate() {
             if let Some(visitor) = visitor.take() {
                 end(PACKET * index + lane, visitor);
@@ -80,30 +102,40 @@ pub(super) fn in_packets<V: Visitor>(
 
 /// At most sixteen rays.
 #[inline(always)]
-fn sixteen<V: Visitor>(trip: &Trip, rays: &[Ray], visitors: &mut [Option<V>]) {
+fn sixteen<V: Visitor>(
+    trip: &Trip,
+    rays: &[Ray],
+    visitors: &mut [Option<V>],
+    fullness: &mut Fullness,
+) {
     #[cfg(target_arch = "x86_64")]
     if let Some(proof) = trip.simd.avx512()
         && rays.len() == 16
         // SAFETY: the processor has AVX-512.
-        && unsafe { packet::traverse_avx512(proof, trip, rays, visitors) }
+        && let Some(packet) = unsafe { packet::traverse_avx512(proof, trip, rays, visitors) }
     {
-        return;
+        return fullness.add(&packet);
     }
     for (rays, visitors) in rays.chunks(8).zip(visitors.chunks_mut(8)) {
-        eight(trip, rays, visitors);
+        eight(trip, rays, visitors, fullness);
     }
 }
 
 /// At most eight rays.
 #[inline(always)]
-fn eight<V: Visitor>(trip: &Trip, rays: &[Ray], visitors: &mut [Option<V>]) {
+fn eight<V: Visitor>(
+    trip: &Trip,
+    rays: &[Ray],
+    visitors: &mut [Option<V>],
+    fullness: &mut Fullness,
+) {
     #[cfg(target_arch = "x86_64")]
     if let Some(proof) = trip.simd.avx2()
         && rays.len() == 8
         // SAFETY: the processor has AVX2.
-        && unsafe { packet::traverse_avx2(proof, trip, rays, visitors) }
+        && let Some(packet) = unsafe { packet::traverse_avx2(proof, trip, rays, visitors) }
     {
-        return;
+        return fullness.add(&packet);
     }
     for (ray, visitor) in rays.iter().zip(visitors) {
         if let Some(visitor) = visitor {
@@ -126,11 +158,11 @@ fn one_by_one<V: Visitor>(
     }
 }
 
-/// Whether rays that take turns gain more by that than taking turns costs: where they go a long way, or
-/// start far apart, so that each reads what is in no cache, and go some way.
-fn is_worth_turns(trip: &Trip, rays: &[Ray]) -> bool {
+/// Whether rays that take turns gain more by that than taking turns costs: where they go a long way, or are
+/// far from each other, so that each reads what is in no cache, and go some way.
+fn is_worth_turns(trip: &Trip, rays: &[Ray], are_far: bool) -> bool {
     // Where both were as fast, over thirteen scenes.
-    let least = if start_apart(trip, rays) { 2 } else { 8 };
+    let least = if are_far { 2 } else { 8 };
     // A few rays tell how long their ways are.
     let sample = rays.iter().step_by(64).filter(|ray| ray.is_valid());
     let steps = |ray: &Ray| {
@@ -258,12 +290,9 @@ mod tests {
         assert!(!go_the_same_way(&opposite));
     }
 
-    #[test]
-    fn rays_that_take_turns_find_what_single_rays_find() {
-        let mut state = 11;
-        let mut point =
-            |from: f32, to: f32| [(); 3].map(|()| from + (to - from) * noise(&mut state));
-        // Small triangles, so that rays go a long way between them.
+    /// Small triangles, so that rays go a long way between them.
+    fn small_triangles(state: &mut u32) -> (Mesh, Tree) {
+        let mut point = |from: f32, to: f32| [(); 3].map(|()| from + (to - from) * noise(state));
         let corners = |_| {
             let (middle, size) = (point(0.0, 1.0), 0.1);
             [(); 3].map(|()| {
@@ -275,6 +304,30 @@ mod tests {
         let triangles: Vec<_> = (0..900).map(|at| [3 * at, 3 * at + 1, 3 * at + 2]).collect();
         let mesh = Mesh::new(&positions, &triangles).expect("sound");
         let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
+        (mesh, tree)
+    }
+
+    /// Asks for the closest hits of rays, all at once and one by one.
+    fn finds_what_single_rays_find(trip: &Trip, rays: &[Ray]) {
+        let single = |ray: &Ray| {
+            let mut closest = Closest::new(ray, |_| true);
+            traverse(trip, ray, &mut closest);
+            closest.hit
+        };
+        let mut found = vec![None; rays.len()];
+        let begin = |_: usize, ray: &Ray| Some(Closest::new(ray, |_| true));
+        trace(trip, rays, begin, |index, closest| found[index] = closest.hit);
+        let expected: Vec<_> = rays.iter().map(single).collect();
+        assert!(expected.iter().flatten().count() > 100);
+        assert_eq!(found, expected, "{}", trip.simd.name());
+    }
+
+    #[test]
+    fn rays_that_take_turns_find_what_single_rays_find() {
+        let mut state = 11;
+        let (mesh, tree) = small_triangles(&mut state);
+        let mut point =
+            |from: f32, to: f32| [(); 3].map(|()| from + (to - from) * noise(&mut state));
         // From all around, through the scene.
         let rays: Vec<_> = (0..1000)
             .map(|_| {
@@ -285,18 +338,41 @@ mod tests {
         for simd in Best::each() {
             let (layout, reach) = (Layout::new(&mesh, &tree), reach(&tree.bounds()));
             let trip = Trip { layout, reach, simd };
-            assert!(is_worth_turns(&trip, &rays) && !go_together(&trip, &rays));
-            let single = |ray: &Ray| {
-                let mut closest = Closest::new(ray, |_| true);
-                traverse(&trip, ray, &mut closest);
-                closest.hit
+            assert!(is_worth_turns(&trip, &rays, true) && !go_together(&trip, &rays));
+            finds_what_single_rays_find(&trip, &rays);
+        }
+    }
+
+    #[test]
+    fn rays_that_part_soon_find_what_single_rays_find() {
+        let mut state = 17;
+        let (mesh, tree) = small_triangles(&mut state);
+        // From one place, in any order, so that neighbours are not beside each other.
+        let mut ray = |spread: f32| {
+            let [x, y, z] = [(); 3].map(|()| spread * (noise(&mut state) - 0.5));
+            Ray::new([0.5, 0.4, -2.0], [x, y + 0.02, 2.5 + z])
+        };
+        let parting: Vec<_> = (0..1000).map(|_| ray(0.7)).collect();
+        let beside: Vec<_> = (0..1000).map(|_| ray(0.01)).collect();
+        for simd in Best::each() {
+            let (layout, reach) = (Layout::new(&mesh, &tree), reach(&tree.bounds()));
+            let trip = Trip { layout, reach, simd };
+            let is_enough = |rays: &[Ray]| {
+                assert!(go_together(&trip, rays));
+                let mut fullness = Fullness::default();
+                for rays in rays.chunks(PACKET).take(TRIED) {
+                    let mut visitors =
+                        [(); PACKET].map(|()| Some(Closest::new(&rays[0], |_| true)));
+                    sixteen(&trip, rays, &mut visitors, &mut fullness);
+                }
+                fullness.is_enough()
             };
-            let mut found = vec![None; rays.len()];
-            let begin = |_: usize, ray: &Ray| Some(Closest::new(ray, |_| true));
-            trace(&trip, &rays, begin, |index, closest| found[index] = closest.hit);
-            let expected: Vec<_> = rays.iter().map(single).collect();
-            assert!(expected.iter().flatten().count() > 100);
-            assert_eq!(found, expected, "{}", simd.name());
+            // Other processors have no packets.
+            let has_packets = cfg!(target_arch = "x86_64") && trip.simd.name() != "none";
+            assert_eq!(is_enough(&parting), !has_packets);
+            assert!(is_enough(&beside));
+            finds_what_single_rays_find(&trip, &parting);
+            finds_what_single_rays_find(&trip, &beside);
         }
     }
 }

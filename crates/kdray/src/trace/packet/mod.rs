@@ -9,6 +9,7 @@ mod boxes;
 mod triangles;
 
 use super::block::Block;
+use super::fullness::Fullness;
 use super::prepare::{Shear, lesser};
 use super::simd::{Avx2, HasAvx2, HasAvx512};
 use super::stack::Stack;
@@ -34,15 +35,15 @@ struct Packet<'a, L: Vector> {
     until: Numbers,
 }
 
-/// Shows each of eight visitors what its ray comes to; gives false and shows nothing where the rays
-/// do not go the same way. Rays without a visitor stay away.
+/// Shows each of eight visitors what its ray comes to, and gives how full the packet was; shows nothing
+/// where the rays do not go the same way. Rays without a visitor stay away.
 #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
 pub(super) fn traverse_avx2<V: Visitor>(
     proof: HasAvx2,
     trip: &Trip,
     rays: &[Ray],
     visitors: &mut [Option<V>],
-) -> bool {
+) -> Option<Fullness> {
     traverse::<V, Eight>((proof, proof), trip, rays, visitors)
 }
 
@@ -53,7 +54,7 @@ pub(super) fn traverse_avx512<V: Visitor>(
     trip: &Trip,
     rays: &[Ray],
     visitors: &mut [Option<V>],
-) -> bool {
+) -> Option<Fullness> {
     traverse::<V, Sixteen>((proof.avx2(), proof), trip, rays, visitors)
 }
 
@@ -63,17 +64,16 @@ fn traverse<V: Visitor, L: Vector>(
     trip: &Trip,
     rays: &[Ray],
     visitors: &mut [Option<V>],
-) -> bool {
+) -> Option<Fullness> {
     let lanes = Rays::<L>::new(proof, rays);
-    let Some(boxes) = Boxes::new(&lanes, trip.reach, avx2) else { return false };
+    let boxes = Boxes::new(&lanes, trip.reach, avx2)?;
     let mut until = lanes.t_max.numbers();
     for (until, visitor) in until.0.iter_mut().zip(visitors.iter()) {
         *until = if visitor.is_some() { *until } else { ENOUGH };
     }
     let (lanes, boxes) = (&lanes, &boxes);
     let mut packet = Packet { simd: avx2.into(), trip, rays, lanes, boxes, proof, until };
-    packet.traverse(visitors);
-    true
+    Some(packet.traverse(visitors))
 }
 
 /// Rays, one a lane.
@@ -94,13 +94,16 @@ impl<L: Vector> Rays<L> {
 
 impl<L: Vector> Packet<'_, L> {
     #[inline(always)]
-    fn traverse<V: Visitor>(&mut self, visitors: &mut [Option<V>]) {
+    fn traverse<V: Visitor>(&mut self, visitors: &mut [Option<V>]) -> Fullness {
         let wides = &self.trip.layout.wides[..];
         let (mut stack, mut child, mut mask) = (Stack::new(), Child(0), (1_u32 << L::LANES) - 1);
         let mut last = self.last();
         // Made when the first leaf is reached: many packets reach none.
         let mut triangles = None;
+        let (mut rays, mut room) = (0, 0);
         loop {
+            rays += mask.count_ones() as usize;
+            room += L::LANES;
             if mask.count_ones() < FEW {
                 self.go_on_alone(child, mask, visitors);
                 last = self.last();
@@ -115,7 +118,9 @@ impl<L: Vector> Packet<'_, L> {
             }
             let until = L::of_numbers(self.proof, &self.until);
             (child, mask) = loop {
-                let Some(place) = stack.pop(last) else { return };
+                let Some(place) = stack.pop(last) else {
+                    return Fullness { rays, room };
+                };
                 let (wide, place) = (&wides[place.0 as usize / 8], place.0 as usize % 8);
                 let mask = self.boxes.meet(wide, place, until);
                 if mask != 0 {

@@ -28,13 +28,13 @@ fn most(trip: &Trip) -> usize {
 /// Whether the rays were a packet.
 fn together<V: Visitor>(trip: &Trip, rays: &[Ray], visitors: &mut [Option<V>]) -> bool {
     let avx2 = trip.simd.avx2().expect("asked for before");
-    // SAFETY: the processor has it.
-    let eight = |visitors: &mut [Option<V>]| unsafe { traverse_avx2(avx2, trip, rays, visitors) };
-    match trip.simd.avx512() {
-        // SAFETY: as above.
+    let packet = match trip.simd.avx512() {
+        // SAFETY: the processor has it. The same below.
         Some(proof) if rays.len() == 16 => unsafe { traverse_avx512(proof, trip, rays, visitors) },
-        _ => eight(visitors),
-    }
+        // SAFETY: as above.
+        _ => unsafe { traverse_avx2(avx2, trip, rays, visitors) },
+    };
+    packet.is_some()
 }
 
 /// The hits of rays along these directions, of which one stays away, if they were a packet.
