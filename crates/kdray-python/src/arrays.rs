@@ -24,6 +24,8 @@ pub(crate) enum Scalars<'py> {
 
 /// Points or directions of the world. The rows may lie anywhere, and apart.
 pub(crate) enum Rows<'a> {
+    /// One after the other.
+    Packed(&'a [[f32; 3]]),
     Single(ArrayView2<'a, f32>),
     Double(ArrayView2<'a, f64>),
 }
@@ -43,13 +45,12 @@ pub(crate) enum Values<'a> {
 
 impl Vectors<'_> {
     pub(crate) fn rows(&self) -> PyResult<Rows<'_>> {
-        let rows = match self {
-            Self::Single(array) => Rows::Single(array.as_array()),
-            Self::Double(array) => Rows::Double(array.as_array()),
-        };
-        let columns = match &rows {
-            Rows::Single(array) => array.ncols(),
-            Rows::Double(array) => array.ncols(),
+        let (rows, columns) = match self {
+            Self::Single(array) => match threes(array) {
+                Ok(rows) => (Rows::Packed(rows), 3),
+                Err(_) => (Rows::Single(array.as_array()), array.as_array().ncols()),
+            },
+            Self::Double(array) => (Rows::Double(array.as_array()), array.as_array().ncols()),
         };
         if columns == 3 { Ok(rows) } else { Err(not_three()) }
     }
@@ -97,6 +98,7 @@ fn not_three() -> PyErr {
 impl Rows<'_> {
     pub(crate) fn len(&self) -> usize {
         match self {
+            Self::Packed(rows) => rows.len(),
             Self::Single(rows) => rows.nrows(),
             Self::Double(rows) => rows.nrows(),
         }
@@ -105,6 +107,7 @@ impl Rows<'_> {
     #[inline]
     pub(crate) fn world(&self, index: usize) -> [f64; 3] {
         match self {
+            Self::Packed(rows) => rows[index].map(f64::from),
             Self::Single(rows) => row(rows, index).map(f64::from),
             Self::Double(rows) => row(rows, index),
         }
@@ -114,14 +117,14 @@ impl Rows<'_> {
     #[inline]
     pub(crate) fn local(&self, index: usize, frame: &Frame) -> [f32; 3] {
         match self {
-            Self::Single(rows) if *frame == Frame::IDENTITY => row(rows, index),
+            Self::Packed(rows) if *frame == Frame::IDENTITY => rows[index],
             _ => frame.local_point(self.world(index)),
         }
     }
 }
 
 #[inline]
-pub(crate) fn row<T: Copy>(rows: &ArrayView2<'_, T>, index: usize) -> [T; 3] {
+fn row<T: Copy>(rows: &ArrayView2<'_, T>, index: usize) -> [T; 3] {
     [0, 1, 2].map(|column| rows[[index, column]])
 }
 

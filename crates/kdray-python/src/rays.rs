@@ -7,7 +7,7 @@ use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Rows, Scalars, Values, Vectors, row};
+use crate::arrays::{Rows, Scalars, Values, Vectors};
 
 /// What a query with rays is asked, as a tuple: origins, directions, the least and the largest `t`,
 /// by ray a triangle that does not count, by triangle whether it counts at all, and threads.
@@ -72,13 +72,12 @@ impl Rays<'_> {
     }
 
     /// A ray in the core's form.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn get(&self, index: usize) -> Ray {
         let (t_min, t_max) = (self.t_min.get(index), self.t_max.get(index));
         match (&self.origins, &self.directions) {
-            (Rows::Single(origins), Rows::Single(directions)) if self.frame == Frame::IDENTITY => {
-                let (origin, direction) = (row(origins, index), row(directions, index));
-                Ray { origin, t_min, direction, t_max }
+            (Rows::Packed(origins), Rows::Packed(directions)) if self.frame == Frame::IDENTITY => {
+                Ray { origin: origins[index], t_min, direction: directions[index], t_max }
             }
             (origins, directions) => {
                 self.frame.local_ray(origins.world(index), directions.world(index), t_min, t_max)
