@@ -91,7 +91,7 @@ pub(super) fn in_packets<V: Visitor>(
         for (lane, (visitor, ray)) in visitors.iter_mut().zip(packet).enumerate() {
             *visitor = begin(PACKET * index + lane, ray);
         }
-        sixteen(trip, packet, &mut visitors[..packet.len()], &mut fullness);
+        fullness.add(&sixteen(trip, packet, &mut visitors[..packet.len()]));
         for (lane, visitor) in visitors.iter_mut().enumerate() {
             if let Some(visitor) = visitor.take() {
                 end(PACKET * index + lane, visitor);
@@ -100,48 +100,41 @@ pub(super) fn in_packets<V: Visitor>(
     }
 }
 
-/// At most sixteen rays.
+/// At most sixteen rays. Gives how full they were as packets, as far as they were.
 #[inline(always)]
-fn sixteen<V: Visitor>(
-    trip: &Trip,
-    rays: &[Ray],
-    visitors: &mut [Option<V>],
-    fullness: &mut Fullness,
-) {
+fn sixteen<V: Visitor>(trip: &Trip, rays: &[Ray], visitors: &mut [Option<V>]) -> Fullness {
     #[cfg(target_arch = "x86_64")]
     if let Some(proof) = trip.simd.avx512()
         && rays.len() == 16
         // SAFETY: the processor has AVX-512.
         && let Some(packet) = unsafe { packet::traverse_avx512(proof, trip, rays, visitors) }
     {
-        return fullness.add(&packet);
+        return packet;
     }
+    let mut fullness = Fullness::default();
     for (rays, visitors) in rays.chunks(8).zip(visitors.chunks_mut(8)) {
-        eight(trip, rays, visitors, fullness);
+        fullness.add(&eight(trip, rays, visitors));
     }
+    fullness
 }
 
 /// At most eight rays.
 #[inline(always)]
-fn eight<V: Visitor>(
-    trip: &Trip,
-    rays: &[Ray],
-    visitors: &mut [Option<V>],
-    fullness: &mut Fullness,
-) {
+fn eight<V: Visitor>(trip: &Trip, rays: &[Ray], visitors: &mut [Option<V>]) -> Fullness {
     #[cfg(target_arch = "x86_64")]
     if let Some(proof) = trip.simd.avx2()
         && rays.len() == 8
         // SAFETY: the processor has AVX2.
         && let Some(packet) = unsafe { packet::traverse_avx2(proof, trip, rays, visitors) }
     {
-        return fullness.add(&packet);
+        return packet;
     }
     for (ray, visitor) in rays.iter().zip(visitors) {
         if let Some(visitor) = visitor {
             traverse(trip, ray, visitor);
         }
     }
+    Fullness::default()
 }
 
 fn one_by_one<V: Visitor>(
@@ -363,7 +356,7 @@ mod tests {
                 for rays in rays.chunks(PACKET).take(TRIED) {
                     let mut visitors =
                         [(); PACKET].map(|()| Some(Closest::new(&rays[0], |_| true)));
-                    sixteen(&trip, rays, &mut visitors, &mut fullness);
+                    fullness.add(&sixteen(&trip, rays, &mut visitors));
                 }
                 fullness.is_enough()
             };
