@@ -85,9 +85,11 @@ impl Scalars<'_> {
 
 /// The rows of a contiguous array with three columns.
 pub(crate) fn threes<'a, T: Element>(array: &'a PyReadonlyArray2<'_, T>) -> PyResult<&'a [[T; 3]]> {
-    match array.as_slice()?.as_chunks() {
-        (rows, []) if rows.len() == array.as_array().nrows() => Ok(rows),
-        _ => Err(not_three()),
+    let view = array.as_array();
+    // numpy's own word for contiguous includes columns one after the other.
+    match view.to_slice().map(<[T]>::as_chunks) {
+        Some((rows, [])) if rows.len() == view.nrows() => Ok(rows),
+        _ => Err(error::value("an array without three columns, or whose rows lie apart")),
     }
 }
 
