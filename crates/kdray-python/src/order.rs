@@ -2,9 +2,9 @@
 //!
 //! Rays to a light, or parallel ones, from places in any order: as they come, each goes its own way.
 //! In the order of their places neighbours go together, and the core takes them in packets. Where
-//! triangles are large, that was measured to make a million rays 1.1 to 1.5 times as fast, sorting
-//! included; rays that go everywhere from everywhere gain nothing, and neither do rays that are
-//! farther apart than triangles are large.
+//! triangles are large, a million rays were 0.9 to 1.5 times as fast by that, sorting included; rays
+//! that go everywhere from everywhere gain nothing, and rays that are farther apart than triangles are
+//! large lose.
 
 use std::ops::Range;
 
@@ -17,7 +17,8 @@ use crate::scene::Scene;
 const LEAST: usize = 1 << 14;
 
 /// Least number of rays for each of the triangles that the mesh would have if all were of one size.
-/// Over thirteen meshes fewer rays were slower in order, and as many as fast.
+/// With fewer, shadow rays had three quarters of their rate in order, on four meshes; with more, 0.9 to 1.3
+/// times it on eight, and three quarters on one whose triangles differ most in size.
 const PER_TRIANGLE: f64 = 4.0;
 
 /// Rays that are looked at.

@@ -6,9 +6,7 @@ use super::sift::{Sifted, sheared, sift};
 use super::simd::{Neon, Simd};
 use super::stack::Stack;
 use super::step::{Met, nearer_of_two};
-use super::traverse::Visitor;
 use super::vector::{Arithmetic, Eight, Mask, Numbers, Vector};
-use super::walk::test_blocks;
 use super::wide::{Child, Wide};
 use crate::geometry::{Hit, Ray};
 
@@ -151,16 +149,5 @@ impl Simd for Neon {
         (_, ray): (&Ray, &ShearLanes),
     ) -> Option<Hit> {
         block.hit(lane, surely, &ray.shear)
-    }
-
-    #[inline(never)]
-    fn test_blocks<V: Visitor>(
-        self,
-        blocks: &[Block],
-        ray: (&Ray, &ShearLanes),
-        until: f32,
-        visitor: &mut V,
-    ) -> f32 {
-        test_blocks(self, blocks, ray, until, visitor)
     }
 }

@@ -64,14 +64,17 @@ pub(super) trait Simd: Copy {
         ray: (&Ray, &Self::Shear),
     ) -> Option<Hit>;
 
-    /// [`test_blocks`] in a function of its own.
+    /// [`test_blocks`] in a function of its own, which may need to be told its instructions.
+    #[inline(never)]
     fn test_blocks<V: Visitor>(
         self,
         blocks: &[Block],
         ray: (&Ray, &Self::Shear),
         until: f32,
         visitor: &mut V,
-    ) -> f32;
+    ) -> f32 {
+        test_blocks(self, blocks, ray, until, visitor)
+    }
 }
 
 /// For every processor.
@@ -122,17 +125,6 @@ impl Simd for Plain {
         (_, shear): (&Ray, &Shear),
     ) -> Option<Hit> {
         block.hit(lane, surely, shear)
-    }
-
-    #[inline(never)]
-    fn test_blocks<V: Visitor>(
-        self,
-        blocks: &[Block],
-        ray: (&Ray, &Shear),
-        until: f32,
-        visitor: &mut V,
-    ) -> f32 {
-        test_blocks(self, blocks, ray, until, visitor)
     }
 }
 
