@@ -31,7 +31,7 @@
 //! # Parts
 //!
 //! `collapse` lays the tree out in the nodes of eight boxes of `wide`; `prepare` makes of a ray
-//! what traversal needs; `traverse` visits the leaves along it from front to back, `walk`ing `step`
+//! what traversal needs, and `hull` knows rays that pass beside everything; `traverse` visits the leaves along it from front to back, `walk`ing `step`
 //! by `step`, and `stream` does so for several rays at a time, in turns or as a `packet`. `lists` has
 //! all hits of many rays, as a `wave` where each goes its own way. `block` holds the triangles of a
 //! leaf, eight at a time, and `filter` finds those that a ray hits; `simd` says with which
@@ -58,6 +58,7 @@ mod filter;
 mod fullness;
 mod grid;
 mod hits;
+mod hull;
 mod intersect;
 #[cfg(target_arch = "x86_64")]
 mod lane;

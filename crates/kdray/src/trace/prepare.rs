@@ -107,7 +107,7 @@ impl Slabs {
 
 /// The largest magnitude of a component.
 #[inline(always)]
-fn largest([x, y, z]: &[f32; 3]) -> f32 {
+pub(super) fn largest([x, y, z]: &[f32; 3]) -> f32 {
     greater(greater(x.abs(), y.abs()), z.abs())
 }
 

@@ -266,9 +266,7 @@ mod tests {
     use crate::geometry::Mesh;
     use crate::trace::hits::Closest;
     use crate::trace::noise::noise;
-    use crate::trace::prepare::reach;
     use crate::trace::simd::Best;
-    use crate::trace::wide::Layout;
     use crate::{BuildOptions, Tree};
 
     #[test]
@@ -329,8 +327,7 @@ mod tests {
             })
             .collect();
         for simd in Best::each() {
-            let (layout, reach) = (Layout::new(&mesh, &tree), reach(&tree.bounds()));
-            let trip = Trip { layout, reach, simd };
+            let trip = Trip::new(&mesh, &tree, simd);
             assert!(is_worth_turns(&trip, &rays, true) && !go_together(&trip, &rays));
             finds_what_single_rays_find(&trip, &rays);
         }
@@ -348,8 +345,7 @@ mod tests {
         let parting: Vec<_> = (0..1000).map(|_| ray(0.7)).collect();
         let beside: Vec<_> = (0..1000).map(|_| ray(0.01)).collect();
         for simd in Best::each() {
-            let (layout, reach) = (Layout::new(&mesh, &tree), reach(&tree.bounds()));
-            let trip = Trip { layout, reach, simd };
+            let trip = Trip::new(&mesh, &tree, simd);
             let is_enough = |rays: &[Ray]| {
                 assert!(go_together(&trip, rays));
                 let mut fullness = Fullness::default();

@@ -5,11 +5,9 @@ use std::sync::atomic::AtomicUsize;
 
 use super::grid::Grid;
 use super::only::Only;
-use super::prepare::reach;
 use super::simd::Best;
 use super::tilt::{Tilt, tilts};
 use super::traverse::{Trip, Visitor, traverse};
-use super::wide::Layout;
 use crate::geometry::{Aabb, Hit, Mesh, Ray};
 use crate::tree::Tree;
 
@@ -53,12 +51,9 @@ impl Tracer {
     #[must_use]
     pub fn new(mesh: &Mesh, tree: &Tree) -> Self {
         assert_eq!(mesh.triangles().len(), tree.triangle_count(), "the tree is of another mesh");
-        let bounds = tree.bounds();
-        let (layout, reach) = (Layout::new(mesh, tree), reach(&bounds));
-        let trip = Trip { layout, reach, simd: Best::detect() };
         Self {
-            trip,
-            bounds,
+            trip: Trip::new(mesh, tree, Best::detect()),
+            bounds: tree.bounds(),
             triangle_count: tree.triangle_count(),
             tilts: OnceLock::new(),
             grid: OnceLock::new(),

@@ -1,11 +1,14 @@
 //! Visit the leaves along rays from front to back, with a stack \[PH04].
 
+use super::hull::Hull;
+use super::prepare::reach;
 #[cfg(target_arch = "x86_64")]
 use super::simd::{Avx2, Avx512};
 use super::simd::{Best, Plain, Simd};
 use super::walk::visit_below;
 use super::wide::{Child, Layout};
-use crate::geometry::{Hit, Ray};
+use crate::geometry::{Hit, Mesh, Ray};
+use crate::tree::Tree;
 
 /// Sees what a ray comes to.
 pub(super) trait Visitor {
@@ -44,6 +47,7 @@ pub(super) trait Visitor {
 /// What rays are traced through, and how.
 pub(super) struct Trip {
     pub(super) layout: Layout,
+    pub(super) hull: Hull,
     /// The largest coordinate of the scene.
     pub(super) reach: f32,
     #[cfg_attr(
@@ -51,6 +55,14 @@ pub(super) struct Trip {
         expect(dead_code, reason = "one way only")
     )]
     pub(super) simd: Best,
+}
+
+impl Trip {
+    pub(super) fn new(mesh: &Mesh, tree: &Tree, simd: Best) -> Self {
+        let bounds = tree.bounds();
+        let layout = Layout::new(mesh, tree);
+        Self { layout, hull: Hull::new(&bounds), reach: reach(&bounds), simd }
+    }
 }
 
 /// No `t` is as low: the visitor has seen enough.
@@ -95,7 +107,7 @@ fn traverse_avx512<V: Visitor>(simd: Avx512, trip: &Trip, ray: &Ray, visitor: &m
 
 #[inline(always)]
 fn traverse_with(simd: impl Simd, trip: &Trip, ray: &Ray, visitor: &mut impl Visitor) {
-    if simd.is_valid(ray) {
+    if !simd.is_beside(ray, &trip.hull) && simd.is_valid(ray) {
         let root = (Child(0), ray.t_max);
         visit_below(simd, &trip.layout, (ray, trip.reach), root, visitor);
     }
@@ -104,9 +116,7 @@ fn traverse_with(simd: impl Simd, trip: &Trip, ray: &Ray, visitor: &mut impl Vis
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Mesh;
-    use crate::trace::prepare::reach;
-    use crate::{BuildOptions, Tree};
+    use crate::BuildOptions;
 
     /// Keeps every hit it is shown.
     struct Everything(Vec<(u32, u32)>);
@@ -136,8 +146,7 @@ mod tests {
         let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
         for simd in Best::each() {
             println!("{}", simd.name());
-            let (layout, reach) = (Layout::new(&mesh, &tree), reach(&tree.bounds()));
-            shows_what_the_plain_one_shows(&Trip { layout, reach, simd });
+            shows_what_the_plain_one_shows(&Trip::new(&mesh, &tree, simd));
         }
     }
 

@@ -2,9 +2,7 @@ use super::*;
 use crate::geometry::Mesh;
 use crate::trace::hits::{Closest, FirstHits};
 use crate::trace::noise::noise;
-use crate::trace::prepare::reach;
 use crate::trace::simd::Best;
-use crate::trace::wide::Layout;
 use crate::{BuildOptions, Tree};
 
 /// What packets are traced through, if this processor has them.
@@ -16,8 +14,7 @@ fn trip(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Option<Trip> {
     }
     let mesh = Mesh::new(positions, triangles).expect("sound");
     let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
-    let (layout, reach) = (Layout::new(&mesh, &tree), reach(&tree.bounds()));
-    Some(Trip { layout, reach, simd })
+    Some(Trip::new(&mesh, &tree, simd))
 }
 
 /// Rays of the largest packet.

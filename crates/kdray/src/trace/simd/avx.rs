@@ -4,6 +4,7 @@ use super::{HasAvx2, HasAvx512, Simd};
 use crate::geometry::{Hit, Ray};
 use crate::trace::block::Block;
 use crate::trace::block_ray::BlockRay;
+use crate::trace::hull::Hull;
 use crate::trace::sift::Sifted;
 use crate::trace::stack::Stack;
 use crate::trace::step::{self, Lanes};
@@ -43,6 +44,12 @@ macro_rules! simd {
             fn is_valid(self, ray: &Ray) -> bool {
                 // SAFETY: this exists only where the processor has the instructions. The same below.
                 unsafe { step::is_valid(ray) }
+            }
+
+            #[inline(always)]
+            fn is_beside(self, ray: &Ray, hull: &Hull) -> bool {
+                // SAFETY: as above.
+                unsafe { hull.is_beside_avx2(ray) }
             }
 
             #[inline(always)]

@@ -5,6 +5,7 @@
 mod avx;
 
 use super::block::Block;
+use super::hull::Hull;
 use super::prepare::{Shear, Slabs};
 use super::sift::Sifted;
 use super::stack::Stack;
@@ -27,6 +28,12 @@ pub(super) trait Simd: Copy {
     #[inline(always)]
     fn is_valid(self, ray: &Ray) -> bool {
         ray.is_valid()
+    }
+
+    /// [`Hull::is_beside`].
+    #[inline(always)]
+    fn is_beside(self, ray: &Ray, hull: &Hull) -> bool {
+        hull.is_beside(ray)
     }
 
     fn slabs(self, ray: &Ray, reach: f32) -> Self::Slabs;

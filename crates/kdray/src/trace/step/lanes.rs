@@ -226,9 +226,8 @@ pub(in crate::trace) unsafe fn nearest_avx512(
             return only(wide, mask);
         }
         let order = *wide.order.get_unchecked(slabs.octant);
-        let met = push_ordered(wide, order, &passage, 1, stack);
-        let nearest = 31 - u32::from(met).leading_zeros();
-        Some(wide.children[(order >> (4 * nearest)) as usize & 7])
+        push_ordered(wide, order, &passage, stack);
+        Some(stack.take())
     }
 }
 
@@ -248,24 +247,17 @@ pub(in crate::trace) unsafe fn push_avx512(
     unsafe {
         let passage = pass(wide, slabs, interval);
         let order = *wide.order.get_unchecked(slabs.octant);
-        push_ordered(wide, order, &passage, 0, stack);
+        push_ordered(wide, order, &passage, stack);
     }
 }
 
-/// Puts the children that are met on the stack, the farthest first, but for so many of the nearest. Gives
-/// which are met, in the same order.
+/// Puts the children that are met on the stack, the farthest first.
 ///
 /// # Safety
 ///
 /// The processor has AVX-512 and what comes with it.
 #[inline(always)]
-unsafe fn push_ordered(
-    wide: &Wide,
-    order: u32,
-    passage: &Passage,
-    but: usize,
-    stack: &mut Stack,
-) -> __mmask8 {
+unsafe fn push_ordered(wide: &Wide, order: u32, passage: &Passage, stack: &mut Stack) {
     // SAFETY: the same; children are eight lanes, aligned like the node.
     unsafe {
         let places = nibbles(order);
@@ -275,9 +267,8 @@ unsafe fn push_ordered(
         let children = _mm256_load_si256(wide.children.as_ptr().cast());
         let children = _mm256_permutevar8x32_epi32(children, places);
         let children = _mm256_maskz_compress_epi32(met, children);
-        let count = met.count_ones() as usize - but;
-        stack.push_avx2(children, _mm256_maskz_compress_ps(met, enter), count);
-        met
+        let enter = _mm256_maskz_compress_ps(met, enter);
+        stack.push_avx2(children, enter, met.count_ones() as usize);
     }
 }
 

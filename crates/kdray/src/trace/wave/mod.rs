@@ -243,10 +243,8 @@ mod tests {
     use crate::geometry::Mesh;
     use crate::trace::hits::FirstHits;
     use crate::trace::noise::noise;
-    use crate::trace::prepare::reach;
     use crate::trace::simd::Best;
     use crate::trace::traverse::traverse;
-    use crate::trace::wide::Layout;
     use crate::{BuildOptions, Tree};
 
     /// Triangles without a pattern, of which one stands there a thousand times: a leaf of many blocks.
@@ -266,8 +264,7 @@ mod tests {
         let mut state = 17;
         let mesh = mesh(&mut state);
         let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
-        let (layout, reach) = (Layout::new(&mesh, &tree), reach(&tree.bounds()));
-        let trip = Trip { layout, reach, simd };
+        let trip = Trip::new(&mesh, &tree, simd);
         let ray = |index: usize| {
             let mut point = || [(); 3].map(|()| 2.0 * noise(&mut state) - 0.5);
             let ray = Ray::new(point(), point().map(|number| number - 0.5));

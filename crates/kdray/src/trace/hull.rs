@@ -1,0 +1,192 @@
+//! The box of a scene, and rays from far away that pass beside it.
+
+use super::eights::by_axis;
+use super::prepare::{THICKNESS, greater, largest, reach};
+use crate::geometry::{Aabb, Ray};
+
+/// The box of everything that rays may hit.
+///
+/// Of a camera's rays most pass beside the scene, each like the one before, and for these making a ray
+/// ready and the step at the root are all there is to do. Whether a line passes beside a box takes a few
+/// products instead. Rays that start near the scene, or in it, go another way each: there the jump is not
+/// foreseen, and costs more than it saves.
+pub(super) struct Hull {
+    /// A number an axis, and one of no consequence.
+    center: [f32; 4],
+    /// From the center to the sides, at least.
+    half: [f32; 4],
+    /// The same of the next axis.
+    half_next: [f32; 4],
+    /// The largest coordinate of the scene.
+    reach: f32,
+    /// Rays are from far away that start farther than this from the center, along any axis.
+    far: f32,
+}
+
+/// Twice what roundings of the triangle tests can move a hit: enough for the roundings here, too.
+const MARGIN: f32 = 2.0 * THICKNESS;
+
+impl Hull {
+    pub(super) fn new(bounds: &Aabb) -> Self {
+        let Aabb { lower, upper } = bounds;
+        let center = by_axis!(|axis| 0.5 * lower[axis] + 0.5 * upper[axis]);
+        let [x, y, z] = by_axis!(|axis| {
+            greater(upper[axis] - center[axis], center[axis] - lower[axis]).next_up()
+        });
+        Self {
+            center: [center[0], center[1], center[2], 0.0],
+            half: [x, y, z, 0.0],
+            half_next: [y, z, x, 0.0],
+            reach: reach(bounds),
+            far: 2.0 * largest(&[x, y, z]),
+        }
+    }
+
+    /// Whether the ray comes from far away, and its line certainly misses the box, and so everything in it.
+    ///
+    /// A line and a box that are apart are so along an axis perpendicular to the line and to an edge of the
+    /// box \[GLM96]. Of numbers out of range nothing is certain, and what is lost of the least ones is less than
+    /// [`f32::MIN_POSITIVE`].
+    #[inline(always)]
+    pub(super) fn is_beside(&self, ray: &Ray) -> bool {
+        let Ray { origin, direction, .. } = ray;
+        let way = by_axis!(|axis| origin[axis] - self.center[axis]);
+        // Not so, either, if something is not a number.
+        let is_far = way.iter().any(|way| way.abs() > self.far);
+        let margin = MARGIN * (largest(origin) + self.reach);
+        let is_apart = |axis: usize| {
+            let next = (axis + 1) % 3;
+            let across = way[axis] * direction[next] - way[next] * direction[axis];
+            let [half, half_next] = [self.half[axis] + margin, self.half_next[axis] + margin];
+            let reached = half * direction[next].abs() + half_next * direction[axis].abs();
+            across.abs() > reached + f32::MIN_POSITIVE && across.is_finite()
+        };
+        is_far && (0..3).any(is_apart)
+    }
+
+    /// The same with all axes at once.
+    ///
+    /// # Safety
+    ///
+    /// The processor has AVX2 and FMA.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(super) unsafe fn is_beside_avx2(&self, ray: &Ray) -> bool {
+        use super::step::{halves, largest, magnitude, signs};
+        use std::arch::x86_64::*;
+
+        const NEXT: i32 = 0b11_00_10_01;
+        // SAFETY: the same; there are four numbers.
+        unsafe {
+            let [origin, direction] = halves(ray);
+            let way = _mm_sub_ps(origin, _mm_loadu_ps(self.center.as_ptr()));
+            let is_far = _mm_cmpgt_ps(magnitude(way), _mm_set1_ps(self.far));
+            if signs(is_far) == 0 {
+                return false;
+            }
+            let from_center = _mm_add_ps(largest(magnitude(origin)), _mm_set1_ps(self.reach));
+            let margin = _mm_mul_ps(_mm_set1_ps(MARGIN), from_center);
+            let half = _mm_add_ps(_mm_loadu_ps(self.half.as_ptr()), margin);
+            let half_next = _mm_add_ps(_mm_loadu_ps(self.half_next.as_ptr()), margin);
+            let [next, way_next] = [_mm_permute_ps::<NEXT>(direction), _mm_permute_ps::<NEXT>(way)];
+            let across = _mm_fmsub_ps(way, next, _mm_mul_ps(way_next, direction));
+            let across = magnitude(across);
+            let least = _mm_set1_ps(f32::MIN_POSITIVE);
+            let reached = _mm_fmadd_ps(half_next, magnitude(direction), least);
+            let reached = _mm_fmadd_ps(half, magnitude(next), reached);
+            let is_finite = _mm_cmplt_ps(across, _mm_set1_ps(f32::INFINITY));
+            signs(_mm_and_ps(_mm_cmpgt_ps(across, reached), is_finite)) != 0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{LEAST, MOST};
+    use crate::trace::intersect::crossing;
+    use crate::trace::noise::noise;
+    use crate::trace::prepare::Shear;
+    #[cfg(target_arch = "x86_64")]
+    use crate::trace::simd::{Avx2, Best, Simd};
+
+    /// What every way says that there is on this processor.
+    fn said(hull: &Hull, ray: &Ray) -> Vec<bool> {
+        let mut said = vec![hull.is_beside(ray)];
+        #[cfg(target_arch = "x86_64")]
+        said.extend(Best::detect().avx2().map(|it| Avx2::from(it).is_beside(ray, hull)));
+        said
+    }
+
+    /// Rays to the corners, edges and insides of triangles as large as their boxes, and past them; from the
+    /// ends of what is valid, too.
+    #[test]
+    fn no_ray_is_beside_what_it_hits() {
+        let mut state = 23;
+        let [mut hits, mut beside] = [0; 2];
+        for round in 0..300_000 {
+            let size = [1.0, 1e-20, 1e9, 1e-3, 3.0][round % 5];
+            let away = [0.0, 0.0, 1.0, 1e3][round % 4] * size;
+            let mut any = || 2.0 * noise(&mut state) - 1.0;
+            let mut point = |size: f32| [(); 3].map(|()| size * any());
+            let middle = point(away);
+            let mut corners = [(); 3].map(|()| {
+                let corner = point(size);
+                by_axis!(|axis| middle[axis] + corner[axis])
+            });
+            if round % 3 == 0 {
+                // Flat, in a side of the box.
+                corners[1][0] = corners[0][0];
+                corners[2][0] = corners[0][0];
+            }
+            let hull = Hull::new(&Aabb::of_points(&corners));
+            let distance = size * 10.0_f32.powf(2.0 + [0.0, 2.0, 9.0][round % 7 % 3] * any());
+            let start = [(); 3].map(|()| distance * any());
+            let origin = by_axis!(|axis| middle[axis] + start[axis]);
+            let mut weights = [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.3, 0.3, 0.4]][round % 11 % 3];
+            if round % 2 == 0 {
+                weights[1] += 4.0 * any();
+            }
+            let target =
+                by_axis!(|axis| (0..3).map(|at| weights[at] * corners[at][axis]).sum::<f32>());
+            let way = by_axis!(|axis| target[axis] - origin[axis]);
+            let length = [1.0, 1e-18, 1e18][round % 13 % 3] / largest(&way);
+            let ray = Ray::new(origin, way.map(|way| (way * length).clamp(-MOST, MOST)));
+            if !ray.is_valid() {
+                continue;
+            }
+            let is_hit = crossing(Shear::new(&ray), &corners).is_some();
+            let said = said(&hull, &ray);
+            assert!(!is_hit || !said.contains(&true), "{said:?}: {ray:?} hits {corners:?}");
+            hits += u32::from(is_hit);
+            beside += u32::from(!said.contains(&false));
+        }
+        assert!(hits > 50_000 && beside > 50_000, "{hits} hits, {beside} beside");
+    }
+
+    #[test]
+    fn of_what_is_out_of_range_nothing_is_certain() {
+        let hull = Hull::new(&Aabb { lower: [-1.0; 3], upper: [1.0; 3] });
+        let least = [LEAST, LEAST, 0.0];
+        for origin in [[f32::MAX; 3], [f32::NAN; 3], [f32::INFINITY, 5.0, 5.0], [1e20; 3]] {
+            for direction in [[MOST; 3], [1.0; 3], [f32::NAN; 3], least] {
+                let ray = Ray::new(origin, direction);
+                let towards = Ray::new(origin, direction.map(|way| -way));
+                for ray in [ray, towards] {
+                    let is_along = origin[0] == origin[1] && direction[0] == direction[2];
+                    let said = said(&hull, &ray);
+                    assert!(!is_along || !said.contains(&true), "{said:?}: {ray:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rays_that_start_near_are_not_asked() {
+        let hull = Hull::new(&Aabb { lower: [0.0; 3], upper: [2.0, 4.0, 6.0] });
+        let said = |x: f32| said(&hull, &Ray::new([x, 2.0, 3.0], [0.0, 1.0, 0.0]));
+        // Far is twice three from the middle.
+        assert!(!said(6.9).contains(&true));
+        assert!(!said(7.1).contains(&false));
+    }
+}
