@@ -2,6 +2,7 @@
 
 use super::eights::by_axis;
 use super::prepare::{THICKNESS, greater, largest, reach};
+use super::simd::Best;
 use crate::geometry::{Aabb, Ray};
 
 /// The box of everything that rays may hit.
@@ -42,17 +43,23 @@ impl Hull {
         }
     }
 
-    /// Whether the ray comes from far away, and its line certainly misses the box, and so everything in it.
-    ///
-    /// A line and a box that are apart are so along an axis perpendicular to the line and to an edge of the
-    /// box \[GLM96]. Of numbers out of range nothing is certain, and what is lost of the least ones is less than
-    /// [`f32::MIN_POSITIVE`].
+    /// Whether the ray comes from far away, and its line certainly [misses](Self::is_missed) the box.
     #[inline(always)]
     pub(super) fn is_beside(&self, ray: &Ray) -> bool {
+        // Not so, either, if something is not a number.
+        by_axis!(|axis| (ray.origin[axis] - self.center[axis]).abs() > self.far).contains(&true)
+            && self.is_missed(ray)
+    }
+
+    /// Whether the line of the ray certainly misses the box, and so everything in it.
+    ///
+    /// A line and a box that are apart are so along an axis perpendicular to the line and to an edge of the
+    /// box \[GLM96]. Of numbers out of range nothing is certain, and what is lost of the least ones is less
+    /// than [`f32::MIN_POSITIVE`].
+    #[inline(always)]
+    pub(super) fn is_missed(&self, ray: &Ray) -> bool {
         let Ray { origin, direction, .. } = ray;
         let way = by_axis!(|axis| origin[axis] - self.center[axis]);
-        // Not so, either, if something is not a number.
-        let is_far = way.iter().any(|way| way.abs() > self.far);
         let margin = MARGIN * (largest(origin) + self.reach);
         let is_apart = |axis: usize| {
             let next = (axis + 1) % 3;
@@ -61,41 +68,88 @@ impl Hull {
             let reached = half * direction[next].abs() + half_next * direction[axis].abs();
             across.abs() > reached + f32::MIN_POSITIVE && across.is_finite()
         };
-        is_far && (0..3).any(is_apart)
+        (0..3).any(is_apart)
     }
+}
 
-    /// The same with all axes at once.
-    ///
-    /// # Safety
-    ///
-    /// The processor has AVX2 and FMA.
-    #[cfg(target_arch = "x86_64")]
-    #[inline(always)]
-    pub(super) unsafe fn is_beside_avx2(&self, ray: &Ray) -> bool {
-        use super::step::{halves, largest, magnitude, signs};
-        use std::arch::x86_64::*;
+impl Hull {
+    /// Which of the first 64 rays do not certainly miss the box, a bit each.
+    #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "one way only"))]
+    pub(super) fn reached(&self, rays: &[Ray], simd: Best) -> u64 {
+        #[cfg(target_arch = "x86_64")]
+        if simd.avx2().is_some() {
+            // SAFETY: the processor has AVX2 and FMA.
+            return unsafe { self.reached_avx2(rays) };
+        }
+        let bit = |(index, ray)| u64::from(!self.is_missed(ray)) << index;
+        rays.iter().take(64).enumerate().map(bit).sum()
+    }
+}
 
-        const NEXT: i32 = 0b11_00_10_01;
-        // SAFETY: the same; there are four numbers.
-        unsafe {
-            let [origin, direction] = halves(ray);
-            let way = _mm_sub_ps(origin, _mm_loadu_ps(self.center.as_ptr()));
-            let is_far = _mm_cmpgt_ps(magnitude(way), _mm_set1_ps(self.far));
-            if signs(is_far) == 0 {
-                return false;
+/// The same with all axes at once.
+#[cfg(target_arch = "x86_64")]
+mod avx {
+    use std::arch::x86_64::*;
+
+    use super::{Hull, MARGIN};
+    use crate::geometry::Ray;
+    use crate::trace::step::{halves, largest, magnitude, signs};
+
+    /// Of each axis the next.
+    const NEXT: i32 = 0b11_00_10_01;
+
+    impl Hull {
+        /// [`Hull::is_beside`], as a part of the loop that asks.
+        ///
+        /// # Safety
+        ///
+        /// The processor has AVX2 and FMA.
+        #[inline(always)]
+        pub(in crate::trace) unsafe fn is_beside_avx2(&self, ray: &Ray) -> bool {
+            // SAFETY: the same; there are four numbers.
+            unsafe {
+                let way = _mm_sub_ps(halves(ray)[0], _mm_loadu_ps(self.center.as_ptr()));
+                let is_far = _mm_cmpgt_ps(magnitude(way), _mm_set1_ps(self.far));
+                signs(is_far) != 0 && self.is_missed_avx2(ray)
             }
-            let from_center = _mm_add_ps(largest(magnitude(origin)), _mm_set1_ps(self.reach));
-            let margin = _mm_mul_ps(_mm_set1_ps(MARGIN), from_center);
-            let half = _mm_add_ps(_mm_loadu_ps(self.half.as_ptr()), margin);
-            let half_next = _mm_add_ps(_mm_loadu_ps(self.half_next.as_ptr()), margin);
-            let [next, way_next] = [_mm_permute_ps::<NEXT>(direction), _mm_permute_ps::<NEXT>(way)];
-            let across = _mm_fmsub_ps(way, next, _mm_mul_ps(way_next, direction));
-            let across = magnitude(across);
-            let least = _mm_set1_ps(f32::MIN_POSITIVE);
-            let reached = _mm_fmadd_ps(half_next, magnitude(direction), least);
-            let reached = _mm_fmadd_ps(half, magnitude(next), reached);
-            let is_finite = _mm_cmplt_ps(across, _mm_set1_ps(f32::INFINITY));
-            signs(_mm_and_ps(_mm_cmpgt_ps(across, reached), is_finite)) != 0
+        }
+
+        /// [`Hull::is_missed`].
+        ///
+        /// # Safety
+        ///
+        /// The processor has AVX2 and FMA.
+        #[inline(always)]
+        unsafe fn is_missed_avx2(&self, ray: &Ray) -> bool {
+            // SAFETY: the same; there are four numbers.
+            unsafe {
+                let [origin, direction] = halves(ray);
+                let way = _mm_sub_ps(origin, _mm_loadu_ps(self.center.as_ptr()));
+                let from_center = _mm_add_ps(largest(magnitude(origin)), _mm_set1_ps(self.reach));
+                let margin = _mm_mul_ps(_mm_set1_ps(MARGIN), from_center);
+                let half = _mm_add_ps(_mm_loadu_ps(self.half.as_ptr()), margin);
+                let half_next = _mm_add_ps(_mm_loadu_ps(self.half_next.as_ptr()), margin);
+                let [next, way_next] =
+                    [_mm_permute_ps::<NEXT>(direction), _mm_permute_ps::<NEXT>(way)];
+                let across = _mm_fmsub_ps(way, next, _mm_mul_ps(way_next, direction));
+                let across = magnitude(across);
+                let least = _mm_set1_ps(f32::MIN_POSITIVE);
+                let reached = _mm_fmadd_ps(half_next, magnitude(direction), least);
+                let reached = _mm_fmadd_ps(half, magnitude(next), reached);
+                let is_finite = _mm_cmplt_ps(across, _mm_set1_ps(f32::INFINITY));
+                signs(_mm_and_ps(_mm_cmpgt_ps(across, reached), is_finite)) != 0
+            }
+        }
+
+        /// [`Hull::reached`], without a jump.
+        #[target_feature(enable = "avx2,fma")]
+        pub(super) fn reached_avx2(&self, rays: &[Ray]) -> u64 {
+            let mut reached = 0;
+            for (index, ray) in rays.iter().take(64).enumerate() {
+                // SAFETY: the processor has AVX2 and FMA.
+                reached |= u64::from(!unsafe { self.is_missed_avx2(ray) }) << index;
+            }
+            reached
         }
     }
 }
@@ -108,22 +162,19 @@ mod tests {
     use crate::trace::noise::noise;
     use crate::trace::prepare::Shear;
     #[cfg(target_arch = "x86_64")]
-    use crate::trace::simd::{Avx2, Best, Simd};
+    use crate::trace::simd::{Avx2, Simd};
 
-    /// What every way says that there is on this processor.
+    /// Whether the box is missed, as every way says that there is on this processor.
     fn said(hull: &Hull, ray: &Ray) -> Vec<bool> {
-        let mut said = vec![hull.is_beside(ray)];
-        #[cfg(target_arch = "x86_64")]
-        said.extend(Best::detect().avx2().map(|it| Avx2::from(it).is_beside(ray, hull)));
-        said
+        Best::each().into_iter().map(|simd| hull.reached(&[*ray], simd) == 0).collect()
     }
 
     /// Rays to the corners, edges and insides of triangles as large as their boxes, and past them; from the
     /// ends of what is valid, too.
     #[test]
-    fn no_ray_is_beside_what_it_hits() {
+    fn no_ray_misses_what_it_hits() {
         let mut state = 23;
-        let [mut hits, mut beside] = [0; 2];
+        let [mut hits, mut misses] = [0; 2];
         for round in 0..300_000 {
             let size = [1.0, 1e-20, 1e9, 1e-3, 3.0][round % 5];
             let away = [0.0, 0.0, 1.0, 1e3][round % 4] * size;
@@ -159,9 +210,9 @@ mod tests {
             let said = said(&hull, &ray);
             assert!(!is_hit || !said.contains(&true), "{said:?}: {ray:?} hits {corners:?}");
             hits += u32::from(is_hit);
-            beside += u32::from(!said.contains(&false));
+            misses += u32::from(!said.contains(&false));
         }
-        assert!(hits > 50_000 && beside > 50_000, "{hits} hits, {beside} beside");
+        assert!(hits > 50_000 && misses > 50_000, "{hits} hits, {misses} misses");
     }
 
     #[test]
@@ -182,11 +233,17 @@ mod tests {
     }
 
     #[test]
-    fn rays_that_start_near_are_not_asked() {
+    fn rays_that_start_near_are_not_beside() {
         let hull = Hull::new(&Aabb { lower: [0.0; 3], upper: [2.0, 4.0, 6.0] });
-        let said = |x: f32| said(&hull, &Ray::new([x, 2.0, 3.0], [0.0, 1.0, 0.0]));
         // Far is twice three from the middle.
-        assert!(!said(6.9).contains(&true));
-        assert!(!said(7.1).contains(&false));
+        for (x, is_far) in [(6.9, false), (7.1, true)] {
+            let ray = Ray::new([x, 2.0, 3.0], [0.0, 1.0, 0.0]);
+            assert!(!said(&hull, &ray).contains(&false), "{ray:?} misses");
+            assert_eq!(hull.is_beside(&ray), is_far);
+            #[cfg(target_arch = "x86_64")]
+            if let Some(proof) = Best::detect().avx2() {
+                assert_eq!(Avx2::from(proof).is_beside(&ray, &hull), is_far);
+            }
+        }
     }
 }

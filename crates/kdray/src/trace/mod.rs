@@ -32,7 +32,8 @@
 //!
 //! `collapse` lays the tree out in the nodes of eight boxes of `wide`; `prepare` makes of a ray
 //! what traversal needs, and `hull` knows rays that pass beside everything; `traverse` visits the leaves along it from front to back, `walk`ing `step`
-//! by `step`, and `stream` does so for several rays at a time, in turns or as a `packet`. `lists` has
+//! by `step`, and `stream` does so for several rays at a time, in turns, for which they are `waiting`, or as a
+//! `packet`. `lists` has
 //! all hits of many rays, as a `wave` where each goes its own way. `block` holds the triangles of a
 //! leaf, eight at a time, and `filter` finds those that a ray hits; `simd` says with which
 //! instructions, those of NEON in `neon`; `vector` is arithmetic on eight or sixteen numbers, `sift`
@@ -89,6 +90,7 @@ mod tracer;
 mod traverse;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod vector;
+mod waiting;
 mod walk;
 #[cfg(target_arch = "x86_64")]
 mod wave;

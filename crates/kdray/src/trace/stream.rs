@@ -15,6 +15,7 @@ use super::simd::{Avx2, Avx512};
 use super::simd::{Plain, Simd};
 use super::stack::Stack;
 use super::traverse::{Trip, Visitor, traverse};
+use super::waiting::Waiting;
 use super::walk::Walk;
 use super::wide::Child;
 use crate::geometry::Ray;
@@ -46,9 +47,11 @@ fn apart<V: Visitor>(
     begin: impl FnMut(usize, &Ray) -> Option<V>,
     end: impl FnMut(usize, V),
 ) {
-    if !is_worth_turns(trip, rays, are_far) {
+    let sample = Sample::new(trip, rays);
+    if !sample.is_worth_turns(are_far) {
         return one_by_one(trip, rays, begin, end);
     }
+    let rays = Waiting::new(trip, rays, sample.often_misses());
     #[cfg(target_arch = "x86_64")]
     if let Some(proof) = trip.simd.avx512() {
         // SAFETY: the processor has AVX-512.
@@ -151,20 +154,41 @@ fn one_by_one<V: Visitor>(
     }
 }
 
-/// Whether rays that take turns gain more by that than taking turns costs: where they go a long way, or are
-/// far from each other, so that each reads what is in no cache, and go some way.
-fn is_worth_turns(trip: &Trip, rays: &[Ray], are_far: bool) -> bool {
-    // Where both were as fast, over thirteen scenes.
-    let least = if are_far { 2 } else { 8 };
-    // A few rays tell how long their ways are.
-    let sample = rays.iter().step_by(64).filter(|ray| ray.is_valid());
-    let steps = |ray: &Ray| {
-        let mut counted = Counted::new(ray, |_| true);
-        traverse(trip, ray, &mut counted);
-        counted.counts.steps
-    };
-    let (count, sum) = sample.fold((0, 0), |(count, sum), ray| (count + 1, sum + steps(ray)));
-    sum > least * count
+/// What a few rays tell of the others.
+struct Sample {
+    rays: u32,
+    /// Of these pass beside everything.
+    missing: u32,
+    /// Wide nodes that all of them meet.
+    steps: u32,
+}
+
+impl Sample {
+    fn new(trip: &Trip, rays: &[Ray]) -> Self {
+        let mut sample = Self { rays: 0, missing: 0, steps: 0 };
+        for ray in rays.iter().step_by(64).filter(|ray| ray.is_valid()) {
+            let mut counted = Counted::new(ray, |_| true);
+            traverse(trip, ray, &mut counted);
+            let is_missing = trip.hull.is_missed(ray);
+            sample.rays += 1;
+            sample.missing += u32::from(is_missing);
+            sample.steps += if is_missing { 0 } else { counted.counts.steps };
+        }
+        sample
+    }
+
+    /// Whether rays that take turns gain more by that than taking turns costs: where they go a long way, or
+    /// are far from each other, so that each reads what is in no cache, and go some way.
+    fn is_worth_turns(&self, are_far: bool) -> bool {
+        // Where both were as fast, over thirteen scenes.
+        let least = if are_far { 2 } else { 8 };
+        self.steps > least * (self.rays - self.missing)
+    }
+
+    /// Whether so many pass beside everything that it is worth asking all of them.
+    fn often_misses(&self) -> bool {
+        8 * self.missing > self.rays
+    }
 }
 
 /// Whether most rays are beside the one before, all the way.
@@ -201,7 +225,7 @@ fn go_the_same_way(rays: &[Ray]) -> bool {
 fn stream_avx2<V: Visitor>(
     simd: Avx2,
     trip: &Trip,
-    rays: &[Ray],
+    rays: Waiting,
     begin: impl FnMut(usize, &Ray) -> Option<V>,
     end: impl FnMut(usize, V),
 ) {
@@ -213,7 +237,7 @@ fn stream_avx2<V: Visitor>(
 fn stream_avx512<V: Visitor>(
     simd: Avx512,
     trip: &Trip,
-    rays: &[Ray],
+    rays: Waiting,
     begin: impl FnMut(usize, &Ray) -> Option<V>,
     end: impl FnMut(usize, V),
 ) {
@@ -224,16 +248,15 @@ fn stream_avx512<V: Visitor>(
 fn stream_with<V: Visitor>(
     simd: impl Simd,
     trip: &Trip,
-    rays: &[Ray],
+    mut rays: Waiting,
     mut begin: impl FnMut(usize, &Ray) -> Option<V>,
     mut end: impl FnMut(usize, V),
 ) {
     let Trip { layout, reach, .. } = trip;
-    let mut waiting =
-        rays.iter().enumerate().filter_map(|(index, ray)| Some((index, ray, begin(index, ray)?)));
     let mut stacks: Vec<Stack> = std::iter::repeat_with(Stack::new).take(WALKS).collect();
     let mut walks = Vec::with_capacity(WALKS);
-    for (stack, (index, ray, visitor)) in stacks.iter_mut().zip(waiting.by_ref()) {
+    for stack in &mut stacks {
+        let Some((index, ray, visitor)) = rays.next(&mut begin, &mut end) else { break };
         walks.push((index, visitor, Walk::new(simd, ray, *reach, stack), Child(0)));
     }
     while !walks.is_empty() {
@@ -247,7 +270,7 @@ fn stream_with<V: Visitor>(
             };
             if *child != Child::NONE {
                 place += 1;
-            } else if let Some((next, ray, begun)) = waiting.next() {
+            } else if let Some((next, ray, begun)) = rays.next(&mut begin, &mut end) {
                 walk.restart(ray, *reach);
                 *child = Child(0);
                 end(std::mem::replace(index, next), std::mem::replace(visitor, begun));
@@ -328,7 +351,7 @@ mod tests {
             .collect();
         for simd in Best::each() {
             let trip = Trip::new(&mesh, &tree, simd);
-            assert!(is_worth_turns(&trip, &rays, true) && !go_together(&trip, &rays));
+            assert!(Sample::new(&trip, &rays).is_worth_turns(true) && !go_together(&trip, &rays));
             finds_what_single_rays_find(&trip, &rays);
         }
     }
