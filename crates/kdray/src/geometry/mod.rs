@@ -18,7 +18,7 @@ pub use frame::Frame;
 pub use mesh::{Mesh, MeshError};
 pub use mesh_file::MeshFileError;
 pub use ray::{Hit, Ray};
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(target_arch = "x86_64", test))]
 pub(crate) use ray::{LEAST, MOST};
 
 // For builders on other devices; not a stable interface.

@@ -2,7 +2,7 @@
 
 use super::intersect::{Crossing, crossing, locate};
 use super::prepare::Shear;
-use super::sift::Sifted;
+use super::sifted::Sifted;
 use crate::geometry::Hit;
 
 /// Triangles in a block.

@@ -4,7 +4,8 @@ use std::arch::x86_64::*;
 
 use super::block::Block;
 use super::block_ray::BlockRay;
-use super::sift::{Crossed, Sifted, crossed, crossed_between, sheared, sift};
+use super::sift::{Crossed, crossed, crossed_between, sheared, sift};
+use super::sifted::Sifted;
 use super::vector::{Arithmetic, Eight, Mask, by_axis};
 use super::wave::Kept;
 

@@ -70,9 +70,7 @@ impl Hull {
         };
         (0..3).any(is_apart)
     }
-}
 
-impl Hull {
     /// Which of the first 64 rays do not certainly miss the box, a bit each.
     #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "one way only"))]
     pub(super) fn reached(&self, rays: &[Ray], simd: Best) -> u64 {

@@ -2,7 +2,8 @@
 
 use super::block::Block;
 use super::prepare::{Shear, Slabs};
-use super::sift::{Sifted, sheared, sift};
+use super::sift::{sheared, sift};
+use super::sifted::Sifted;
 use super::simd::{Neon, Simd};
 use super::stack::Stack;
 use super::step::{Met, nearer_of_two};

@@ -1,24 +1,7 @@
 //! Which triangles a ray may hit, or which rays a triangle, many at once.
 
+use super::sifted::Sifted;
 use super::vector::{Mask, Vector};
-
-/// Lanes whose ray may hit its triangle in the interval that was asked for, a bit each.
-#[derive(Clone, Copy)]
-pub(super) struct Sifted {
-    pub(super) maybe: u32,
-    /// Those whose line crosses for certain, wherever.
-    pub(super) surely: u32,
-    /// Those that are hit in the interval for certain.
-    pub(super) inside: u32,
-}
-
-impl Sifted {
-    /// Whether the line of a lane crosses for certain.
-    #[inline(always)]
-    pub(super) fn surely(&self, lane: usize) -> bool {
-        self.surely >> lane & 1 == 1
-    }
-}
 
 /// A corner in ray space, with the arithmetic of [`Shear`](super::prepare::Shear).
 #[inline(always)]

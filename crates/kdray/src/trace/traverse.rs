@@ -50,10 +50,6 @@ pub(super) struct Trip {
     pub(super) hull: Hull,
     /// The largest coordinate of the scene.
     pub(super) reach: f32,
-    #[cfg_attr(
-        not(any(target_arch = "x86_64", target_arch = "aarch64")),
-        expect(dead_code, reason = "one way only")
-    )]
     pub(super) simd: Best,
 }
 

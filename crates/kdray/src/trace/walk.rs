@@ -2,10 +2,10 @@
 
 use super::block::Block;
 use super::prepare::lesser;
+use super::sifted::lanes;
 use super::simd::Simd;
 use super::stack::Stack;
 use super::traverse::{ENOUGH, Visitor};
-use super::vector::lanes;
 use super::wide::{Child, Layout};
 use crate::geometry::Ray;
 

@@ -3,7 +3,8 @@
 use super::Rays;
 use crate::trace::block::Block;
 use crate::trace::located::{Located, located, precisely_sheared};
-use crate::trace::sift::{Sifted, sheared, sift};
+use crate::trace::sift::{sheared, sift};
+use crate::trace::sifted::Sifted;
 use crate::trace::vector::{Arithmetic, Numbers, Precise, Vector, by_axis};
 
 /// Rays ready for triangles, as [`Shear`](crate::trace::prepare::Shear) is for one.

@@ -5,7 +5,7 @@ use crate::geometry::{Hit, Ray};
 use crate::trace::block::Block;
 use crate::trace::block_ray::BlockRay;
 use crate::trace::hull::Hull;
-use crate::trace::sift::Sifted;
+use crate::trace::sifted::Sifted;
 use crate::trace::stack::Stack;
 use crate::trace::step::{self, Lanes};
 use crate::trace::traverse::Visitor;

@@ -7,7 +7,7 @@ mod avx;
 use super::block::Block;
 use super::hull::Hull;
 use super::prepare::{Shear, Slabs};
-use super::sift::Sifted;
+use super::sifted::Sifted;
 use super::stack::Stack;
 use super::step;
 use super::traverse::Visitor;

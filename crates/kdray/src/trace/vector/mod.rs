@@ -99,16 +99,6 @@ pub(in crate::trace) trait Mask: Copy {
     fn bits(self) -> u32;
 }
 
-/// The lanes of a mask.
-#[inline(always)]
-pub(in crate::trace) fn lanes(mut mask: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = mask.trailing_zeros() as usize;
-        mask &= mask.wrapping_sub(1);
-        (lane < MOST).then_some(lane)
-    })
-}
-
 /// Operators, by the instruction of each.
 macro_rules! operators {
     ($vector:ty, |$a:ident, $b:ident| $($operator:ident $name:ident $value:expr;)*) => {$(

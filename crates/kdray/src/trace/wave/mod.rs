@@ -20,10 +20,10 @@ use self::ready::{Ready, meet};
 use super::block_ray::BlockRay;
 use super::lane::unknown_hit;
 use super::located::Located;
-use super::sift::Sifted;
+use super::sifted::{Sifted, lanes};
 use super::simd::HasAvx2;
 use super::traverse::Trip;
-use super::vector::{Precise, lanes};
+use super::vector::Precise;
 use super::wide::Child;
 use crate::geometry::{Hit, Ray};
 
