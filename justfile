@@ -17,7 +17,7 @@ lint:
 # Lints the core for processors with other instructions, and for those with none that it knows.
 elsewhere:
     rustup target add aarch64-unknown-linux-gnu wasm32-unknown-unknown
-    cargo clippy -p kdray --lib --target aarch64-unknown-linux-gnu -- -D warnings
+    cargo clippy -p kdray --lib --tests --target aarch64-unknown-linux-gnu -- -D warnings
     cargo clippy -p kdray --lib --target wasm32-unknown-unknown -- -D warnings
 
 # Runs every test.

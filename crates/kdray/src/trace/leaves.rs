@@ -67,7 +67,7 @@ impl Tracer {
         if !ray.is_valid() {
             return;
         }
-        let slabs = Slabs::new(ray, self.trip.reach);
+        let slabs = Slabs::new(ray, self.trip.hull.reach);
         let mut pending = Pending::root();
         while let Some(Visit { child, near, far }) = pending.pop() {
             let Some(first) = child.block() else {

@@ -159,7 +159,7 @@ struct Sample {
     rays: u32,
     /// Of these pass beside everything.
     missing: u32,
-    /// Wide nodes that all of them meet.
+    /// Wide nodes that the others meet.
     steps: u32,
 }
 
@@ -167,12 +167,14 @@ impl Sample {
     fn new(trip: &Trip, rays: &[Ray]) -> Self {
         let mut sample = Self { rays: 0, missing: 0, steps: 0 };
         for ray in rays.iter().step_by(64).filter(|ray| ray.is_valid()) {
+            sample.rays += 1;
+            if trip.hull.is_missed(ray) {
+                sample.missing += 1;
+                continue;
+            }
             let mut counted = Counted::new(ray, |_| true);
             traverse(trip, ray, &mut counted);
-            let is_missing = trip.hull.is_missed(ray);
-            sample.rays += 1;
-            sample.missing += u32::from(is_missing);
-            sample.steps += if is_missing { 0 } else { counted.counts.steps };
+            sample.steps += counted.counts.steps;
         }
         sample
     }
@@ -200,7 +202,7 @@ pub(super) fn go_together(trip: &Trip, rays: &[Ray]) -> bool {
 fn start_apart(trip: &Trip, rays: &[Ray]) -> bool {
     let is_far = |pair: &&[Ray]| {
         let [a, b] = [pair[0].origin, pair[1].origin];
-        (0..3).any(|axis| (a[axis] - b[axis]).abs() > trip.reach / 32.0)
+        (0..3).any(|axis| (a[axis] - b[axis]).abs() > trip.hull.reach / 32.0)
     };
     let pairs = rays.windows(2).step_by(16);
     2 * pairs.clone().filter(is_far).count() >= pairs.count()
@@ -252,12 +254,12 @@ fn stream_with<V: Visitor>(
     mut begin: impl FnMut(usize, &Ray) -> Option<V>,
     mut end: impl FnMut(usize, V),
 ) {
-    let Trip { layout, reach, .. } = trip;
+    let Trip { layout, hull, .. } = trip;
     let mut stacks: Vec<Stack> = std::iter::repeat_with(Stack::new).take(WALKS).collect();
     let mut walks = Vec::with_capacity(WALKS);
     for stack in &mut stacks {
         let Some((index, ray, visitor)) = rays.next(&mut begin, &mut end) else { break };
-        walks.push((index, visitor, Walk::new(simd, ray, *reach, stack), Child(0)));
+        walks.push((index, visitor, Walk::new(simd, ray, hull.reach, stack), Child(0)));
     }
     while !walks.is_empty() {
         let mut place = 0;
@@ -271,7 +273,7 @@ fn stream_with<V: Visitor>(
             if *child != Child::NONE {
                 place += 1;
             } else if let Some((next, ray, begun)) = rays.next(&mut begin, &mut end) {
-                walk.restart(ray, *reach);
+                walk.restart(ray, hull.reach);
                 *child = Child(0);
                 end(std::mem::replace(index, next), std::mem::replace(visitor, begun));
                 place += 1;

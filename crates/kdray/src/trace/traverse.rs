@@ -1,7 +1,6 @@
 //! Visit the leaves along rays from front to back, with a stack \[PH04].
 
 use super::hull::Hull;
-use super::prepare::reach;
 #[cfg(target_arch = "x86_64")]
 use super::simd::{Avx2, Avx512};
 use super::simd::{Best, Plain, Simd};
@@ -48,16 +47,12 @@ pub(super) trait Visitor {
 pub(super) struct Trip {
     pub(super) layout: Layout,
     pub(super) hull: Hull,
-    /// The largest coordinate of the scene.
-    pub(super) reach: f32,
     pub(super) simd: Best,
 }
 
 impl Trip {
     pub(super) fn new(mesh: &Mesh, tree: &Tree, simd: Best) -> Self {
-        let bounds = tree.bounds();
-        let layout = Layout::new(mesh, tree);
-        Self { layout, hull: Hull::new(&bounds), reach: reach(&bounds), simd }
+        Self { layout: Layout::new(mesh, tree), hull: Hull::new(&tree.bounds()), simd }
     }
 }
 
@@ -105,7 +100,7 @@ fn traverse_avx512<V: Visitor>(simd: Avx512, trip: &Trip, ray: &Ray, visitor: &m
 fn traverse_with(simd: impl Simd, trip: &Trip, ray: &Ray, visitor: &mut impl Visitor) {
     if !simd.is_beside(ray, &trip.hull) && simd.is_valid(ray) {
         let root = (Child(0), ray.t_max);
-        visit_below(simd, &trip.layout, (ray, trip.reach), root, visitor);
+        visit_below(simd, &trip.layout, (ray, trip.hull.reach), root, visitor);
     }
 }
 

@@ -4,7 +4,7 @@ use super::traverse::Trip;
 use crate::geometry::Ray;
 
 /// How many rays are looked at together.
-const GROUP: usize = 64;
+const GROUP: usize = u64::BITS as usize;
 
 /// Rays in their order, a group at a time.
 pub(super) struct Waiting<'a> {
@@ -53,7 +53,8 @@ impl<'a> Waiting<'a> {
     ) -> Option<()> {
         let start = self.end;
         let rays = self.rays.get(start..).filter(|rays| !rays.is_empty())?;
-        let all = u64::MAX >> GROUP.saturating_sub(rays.len());
+        let rays = &rays[..rays.len().min(GROUP)];
+        let all = u64::MAX >> (GROUP - rays.len());
         self.end += GROUP;
         self.group =
             if self.often_miss { self.trip.hull.reached(rays, self.trip.simd) } else { all };

@@ -67,7 +67,7 @@ fn traverse<V: Visitor, L: Vector>(
     visitors: &mut [Option<V>],
 ) -> Option<Fullness> {
     let lanes = Rays::<L>::new(proof, rays);
-    let boxes = Boxes::new(&lanes, trip.reach, avx2)?;
+    let boxes = Boxes::new(&lanes, trip.hull.reach, avx2)?;
     let mut until = lanes.t_max.numbers();
     for (until, visitor) in until.0.iter_mut().zip(visitors.iter()) {
         *until = if visitor.is_some() { *until } else { ENOUGH };
@@ -145,11 +145,11 @@ impl<L: Vector> Packet<'_, L> {
     /// Shows what is below `child` to the rays of `mask`, one after the other.
     #[inline(always)]
     fn go_on_alone<V: Visitor>(&mut self, child: Child, mask: u32, visitors: &mut [Option<V>]) {
-        let Trip { layout, reach, .. } = self.trip;
+        let Trip { layout, hull, .. } = self.trip;
         for lane in lanes(mask) {
             let Some(visitor) = &mut visitors[lane] else { continue };
             let until = &mut self.until.0[lane];
-            let (ray, place) = ((&self.rays[lane], *reach), (child, *until));
+            let (ray, place) = ((&self.rays[lane], hull.reach), (child, *until));
             *until = visit_below(self.simd, layout, ray, place, visitor);
         }
     }

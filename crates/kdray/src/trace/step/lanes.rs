@@ -218,15 +218,14 @@ pub(in crate::trace) unsafe fn nearest_avx512(
     interval: [f32; 2],
     stack: &mut Stack,
 ) -> Option<Child> {
-    // SAFETY: the same; an octant is less than eight.
+    // SAFETY: the same.
     unsafe {
         let passage = pass(wide, slabs, interval);
         let mask = u32::from(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(passage.enter, passage.leave));
         if mask & mask.wrapping_sub(1) == 0 {
             return only(wide, mask);
         }
-        let order = *wide.order.get_unchecked(slabs.octant);
-        push_ordered(wide, order, &passage, stack);
+        push_passed(wide, slabs.octant, &passage, stack);
         Some(stack.take())
     }
 }
@@ -243,11 +242,10 @@ pub(in crate::trace) unsafe fn push_avx512(
     interval: [f32; 2],
     stack: &mut Stack,
 ) {
-    // SAFETY: the same; an octant is less than eight.
+    // SAFETY: the same.
     unsafe {
         let passage = pass(wide, slabs, interval);
-        let order = *wide.order.get_unchecked(slabs.octant);
-        push_ordered(wide, order, &passage, stack);
+        push_passed(wide, slabs.octant, &passage, stack);
     }
 }
 
@@ -257,10 +255,10 @@ pub(in crate::trace) unsafe fn push_avx512(
 ///
 /// The processor has AVX-512 and what comes with it.
 #[inline(always)]
-unsafe fn push_ordered(wide: &Wide, order: u32, passage: &Passage, stack: &mut Stack) {
-    // SAFETY: the same; children are eight lanes, aligned like the node.
+unsafe fn push_passed(wide: &Wide, octant: usize, passage: &Passage, stack: &mut Stack) {
+    // SAFETY: the same; an octant is less than eight, and children are eight lanes, aligned like the node.
     unsafe {
-        let places = nibbles(order);
+        let places = nibbles(*wide.order.get_unchecked(octant));
         let enter = _mm256_permutevar8x32_ps(passage.enter, places);
         let leave = _mm256_permutevar8x32_ps(passage.leave, places);
         let met = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(enter, leave);

@@ -98,7 +98,7 @@ impl<T: Kept, A: Fn(usize, u32) -> bool> Wave<'_, T, A> {
         // For blocks too: which rays come to one nobody can foresee.
         let places = self.ready.iter_mut().zip(&mut self.prepared);
         for (ray, (ready, prepared)) in self.rays.iter().zip(places) {
-            (*ready, *prepared) = (Ready::new(ray, self.trip.reach), BlockRay::new(ray));
+            (*ready, *prepared) = (Ready::new(ray, self.trip.hull.reach), BlockRay::new(ray));
         }
         let mut met = self.met.end(self.rays.len());
         for (at, _) in self.rays.iter().enumerate().filter(|(_, ray)| ray.is_valid()) {
