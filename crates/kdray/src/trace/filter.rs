@@ -5,7 +5,7 @@ use std::arch::x86_64::*;
 use super::block::Block;
 use super::block_ray::BlockRay;
 use super::sift::{Crossed, crossed, crossed_between, sheared, sift};
-use super::sifted::Sifted;
+use super::sifted::{Filtered, Sifted, Wants};
 use super::vector::{Arithmetic, Eight, Mask, by_axis};
 use super::wave::Kept;
 
@@ -42,8 +42,8 @@ impl Block {
     /// The triangles that may be hit in the interval, if there are any.
     ///
     /// A line that crosses a triangle often does so behind the ray, most of all where the ray starts on a
-    /// surface. Where it might, or where it is enough to know `whether`, bounds of `t` are asked: they are
-    /// there sooner than a hit. Part of the loop that asks, as in `step/lanes.rs`.
+    /// surface. Where it might, or if several may be hit and the first is wanted, or to know whether there is
+    /// one is enough, bounds of `t` are asked: they are there sooner than a hit. Part of the loop that asks, as in `step/lanes.rs`.
     ///
     /// # Safety
     ///
@@ -53,8 +53,8 @@ impl Block {
         &self,
         ray: &BlockRay,
         [t_min, t_max]: [f32; 2],
-        whether: bool,
-    ) -> Option<Sifted> {
+        wants: Wants,
+    ) -> Option<Filtered> {
         // SAFETY: the same.
         let (corners, first, last, t_per_z) =
             unsafe { (self.sheared_avx2(ray), all(t_min), all(t_max), all(ray.precise[2] as f32)) };
@@ -63,13 +63,22 @@ impl Block {
         if maybe == 0 {
             return None;
         }
-        let [a, b, c] = by_axis!(|corner| corners[corner][2] * t_per_z);
-        let is_ahead = a.min(b).min(c).is_less(first).bits() & maybe == 0;
-        if is_ahead && !whether {
-            return Some(Sifted { maybe, surely: crossed.surely.bits(), inside: 0 });
+        let is_one = maybe & (maybe - 1) == 0;
+        if wants == Wants::All || wants == Wants::First && is_one {
+            let [a, b, c] = by_axis!(|corner| corners[corner][2] * t_per_z);
+            let is_ahead = a.min(b).min(c).is_less(first).bits() & maybe == 0;
+            if is_ahead {
+                let sifted = Sifted { maybe, surely: crossed.surely.bits(), inside: 0 };
+                return Some(Filtered::all(sifted));
+            }
         }
-        let sifted = crossed_between(&corners, &crossed, t_per_z, [first, last]);
-        if sifted.maybe == 0 { None } else { Some(sifted) }
+        let between = crossed_between(&corners, &crossed, t_per_z, [first, last]);
+        let sifted = between.sifted();
+        if sifted.maybe == 0 {
+            return None;
+        }
+        let is_one = sifted.maybe & (sifted.maybe - 1) == 0;
+        Some(if wants == Wants::First && !is_one { between.first() } else { Filtered::all(sifted) })
     }
 
     /// Of the lanes whose edge functions do not differ in sign: all, those whose are not zero, and, if

@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use super::Counts;
+use super::sifted::Wants;
 use super::traverse::{ENOUGH, Visitor};
 use crate::geometry::{Hit, Ray};
 
@@ -21,6 +22,8 @@ impl<F> Closest<F> {
 }
 
 impl<F: Fn(u32) -> bool> Visitor for Closest<F> {
+    const WANTS: Wants = Wants::First;
+
     #[inline(always)]
     fn hit(&mut self, hit: Hit) -> f32 {
         let tie = || self.hit.is_none_or(|best| hit.triangle < best.triangle);
@@ -51,6 +54,8 @@ impl<F> Counted<F> {
 }
 
 impl<F: Fn(u32) -> bool> Visitor for Counted<F> {
+    const WANTS: Wants = Wants::First;
+
     fn hit(&mut self, hit: Hit) -> f32 {
         self.closest.hit(hit)
     }
@@ -90,7 +95,7 @@ impl<F: Fn(u32) -> bool> Visitor for Any<F> {
         if self.found { ENOUGH } else { self.t_max }
     }
 
-    const ASKS_WHETHER: bool = true;
+    const WANTS: Wants = Wants::Whether;
 
     #[inline(always)]
     fn inside(&mut self, triangle: u32) -> f32 {
@@ -180,7 +185,7 @@ impl<F: Fn(u32) -> bool> Visitor for Crossings<F> {
         self.t_max
     }
 
-    const ASKS_WHETHER: bool = true;
+    const WANTS: Wants = Wants::Whether;
 
     #[inline(always)]
     fn inside(&mut self, triangle: u32) -> f32 {
@@ -204,6 +209,12 @@ fn comes_before(a: &Hit, b: &Hit) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Mesh;
+    use crate::trace::intersect;
+    use crate::trace::noise::noise;
+    use crate::trace::simd::Best;
+    use crate::trace::traverse::{Trip, traverse};
+    use crate::{BuildOptions, Tree};
 
     fn keep(limit: usize, shown: &[(f32, u32)]) -> Vec<(f32, u32)> {
         let ray = Ray::new([0.0; 3], [1.0, 0.0, 0.0]);
@@ -225,5 +236,38 @@ mod tests {
     fn no_more_are_kept_than_wanted() {
         assert_eq!(keep(3, &SHOWN), [(0.5, 1), (1.0, 9), (2.0, 3)]);
         assert_eq!(keep(1, &SHOWN), [(0.5, 1)]);
+    }
+
+    /// Slanted triangles behind and through each other, in one leaf: those that are behind another are hit
+    /// where that one is not accepted, or lies before the ray begins.
+    #[test]
+    fn the_closest_of_those_that_are_accepted() {
+        let slant = |index: u32| 0.3 * (index % 3) as f32;
+        let corners: Vec<_> = (0..8)
+            .map(|index| (index, 0.2 * (index / 2) as f32 + slant(index)))
+            .flat_map(|(index, z)| [[0.0, 0.0, z], [4.0, 0.0, z + slant(index)], [0.0, 4.0, z]])
+            .collect();
+        let triangles: Vec<_> = (0..8).map(|index| [0, 1, 2].map(|at| 3 * index + at)).collect();
+        let mesh = Mesh::new(&corners, &triangles).expect("sound");
+        let options = BuildOptions { max_leaf: 8, ..BuildOptions::default() };
+        let tree = Tree::build(&mesh, &options).expect("sound options");
+        assert_eq!(tree.references().len(), 8, "one leaf");
+        let (mut state, mut hits) = (31, 0);
+        for simd in Best::each() {
+            let trip = Trip::new(&mesh, &tree, simd);
+            for round in 0..20_000_u32 {
+                let [x, y, t_min] = [(); 3].map(|()| noise(&mut state));
+                let accept = |triangle: u32| round >> triangle & 1 == 1;
+                let ray = Ray { t_min, ..Ray::new([3.0 * x, 3.0 * y, -0.5], [0.0, 0.1, 1.0]) };
+                let mut closest = Closest::new(&ray, accept);
+                traverse(&trip, &ray, &mut closest);
+                let hit = |index: &u32| intersect(&ray, *index, &mesh.triangle(*index as usize));
+                let expected = (0..8).filter(|index| accept(*index)).filter_map(|it| hit(&it));
+                let expected = expected.reduce(|a, b| if comes_before(&b, &a) { b } else { a });
+                assert_eq!(closest.hit, expected, "{}: {ray:?}", simd.name());
+                hits += u32::from(expected.is_some());
+            }
+        }
+        assert!(hits > 10_000, "{hits} hits");
     }
 }

@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::prepare::{Shear, Slabs};
 use super::sift::{sheared, sift};
-use super::sifted::Sifted;
+use super::sifted::{Filtered, Wants};
 use super::simd::{Neon, Simd};
 use super::stack::Stack;
 use super::step::{Met, nearer_of_two};
@@ -130,15 +130,15 @@ impl Simd for Neon {
         block: &Block,
         ray: &ShearLanes,
         [t_min, t_max]: [f32; 2],
-        _: bool,
-    ) -> Option<Sifted> {
+        _: Wants,
+    ) -> Option<Filtered> {
         let corners = block.corners().each_ref().map(|rows| {
             let corner = ray.shear.axes.map(|axis| self.load(&rows[axis]));
             sheared(corner, &ray.origin, &ray.slope)
         });
         let interval = [self.all(t_min), self.all(t_max)];
         let sifted = sift(&corners, ray.t_per_z, interval);
-        (sifted.maybe != 0).then_some(sifted)
+        (sifted.maybe != 0).then_some(Filtered::all(sifted))
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Which triangles a ray may hit, or which rays a triangle, many at once.
 
-use super::sifted::Sifted;
+use super::sifted::{Filtered, Sifted};
 use super::vector::{Mask, Vector};
 
 /// A corner in ray space, with the arithmetic of [`Shear`](super::prepare::Shear).
@@ -24,12 +24,14 @@ pub(super) fn sift<V: Vector>(corners: &[[V; 3]; 3], t_per_z: V, interval: [V; 2
     if crossed.maybe.bits() == 0 {
         return Sifted { maybe: 0, surely: 0, inside: 0 };
     }
-    crossed_between(corners, &crossed, t_per_z, interval)
+    crossed_between(corners, &crossed, t_per_z, interval).sifted()
 }
 
 /// What the edge functions of triangles tell.
 pub(super) struct Crossed<V: Vector> {
     edges: [V; 3],
+    /// The lowest and the highest edge function.
+    ends: [V; 2],
     /// Where they do not differ in sign.
     pub(super) maybe: V::Mask,
     /// Those of them where none is zero.
@@ -45,7 +47,21 @@ pub(super) fn crossed<V: Vector>(corners: &[[V; 3]; 3]) -> Crossed<V> {
     let highest = edges[0].max(edges[1]).max(edges[2]);
     let zero = lowest.all(0.0);
     let maybe = zero.is_at_most(lowest).or(highest.is_at_most(zero));
-    Crossed { edges, maybe, surely: zero.is_less(lowest).or(highest.is_less(zero)) }
+    let surely = zero.is_less(lowest).or(highest.is_less(zero));
+    Crossed { edges, ends: [lowest, highest], maybe, surely }
+}
+
+/// What bounds of `t` tell of triangles.
+pub(super) struct Between<V: Vector> {
+    /// Those that may be crossed in the interval.
+    maybe: V::Mask,
+    /// Those whose line crosses for certain, wherever.
+    surely: V::Mask,
+    /// Those that are crossed in the interval for certain.
+    inside: V::Mask,
+    /// Between which `t` each is crossed.
+    early: V,
+    late: V,
 }
 
 /// What [`sift`] gives, of triangles some of which may be crossed.
@@ -55,13 +71,30 @@ pub(super) fn crossed_between<V: Vector>(
     crossed: &Crossed<V>,
     t_per_z: V,
     [t_min, t_max]: [V; 2],
-) -> Sifted {
-    let Crossed { edges, maybe, surely } = crossed;
-    let (early, late) = times(corners, edges, t_per_z);
+) -> Between<V> {
+    let Crossed { maybe, surely, .. } = *crossed;
+    let (early, late) = times(corners, crossed, t_per_z);
     let outside = late.is_less(t_min).or(t_max.is_less(early));
-    let inside = t_min.is_at_most(early).and(late.is_at_most(t_max)).and(*surely);
-    let maybe = maybe.and_not(outside).bits();
-    Sifted { maybe, surely: surely.bits(), inside: inside.bits() & maybe }
+    let inside = t_min.is_at_most(early).and(late.is_at_most(t_max)).and(surely);
+    Between { maybe: maybe.and_not(outside), surely, inside, early, late }
+}
+
+impl<V: Vector> Between<V> {
+    #[inline(always)]
+    pub(super) fn sifted(&self) -> Sifted {
+        let maybe = self.maybe.bits();
+        Sifted { maybe, surely: self.surely.bits(), inside: self.inside.bits() & maybe }
+    }
+
+    /// The same, with those apart that are behind another.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(super) fn first(&self) -> Filtered {
+        let sifted = self.sifted();
+        let late = V::pick(self.maybe, self.late, self.late.all(f32::INFINITY)).least();
+        let later = self.early.all(late).is_less(self.early).bits() & sifted.maybe;
+        Filtered { sifted: Sifted { maybe: sifted.maybe & !later, ..sifted }, later, late }
+    }
 }
 
 /// Between which `t` the line of a ray crosses triangles, given their corners in ray space and
@@ -72,29 +105,31 @@ pub(super) fn crossed_between<V: Vector>(
 /// `e = 16 u s (m + 2 u s)`. Where all of them are larger than that, so are those that
 /// [`locate`](super::intersect::locate) works out, or they have the same signs at least; the weights of the corners, which
 /// are edge functions over their sum `d`, are together off by at most `12 e / d`, which moves the
-/// crossing by as much of half the range of z. Nothing is known where numbers come near to the ends
-/// of their range, where errors are not relative.
+/// crossing by as much of half the range of z. So nothing is said where one is not larger than `6 e`, nor
+/// where numbers come near to the ends of their range, where errors are not relative.
 #[inline(always)]
-fn times<V: Vector>(corners: &[[V; 3]; 3], edges: &[V; 3], t_per_z: V) -> (V, V) {
+fn times<V: Vector>(corners: &[[V; 3]; 3], crossed: &Crossed<V>, t_per_z: V) -> (V, V) {
     const HALF_ULP: f32 = 0.5 * f32::EPSILON;
     const TINY: f32 = 1e-30;
     const HUGE: f32 = 1e37;
+    let zero = t_per_z.all(0.0);
     let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = *corners;
     let across = ax.magnitude().max(bx.magnitude()).max(cx.magnitude());
     let across = across.max(ay.magnitude()).max(by.magnitude()).max(cy.magnitude());
     let (low, high) = (az.min(bz).min(cz), az.max(bz).max(cz));
-    let along = low.magnitude().max(high.magnitude());
+    let along = high.max(zero - low);
     let size = t_per_z.all(2.0).fused(along, across);
     let error =
-        t_per_z.all(16.0 * HALF_ULP) * size * t_per_z.all(2.0 * HALF_ULP).fused(size, across);
-    let [u, v, w] = *edges;
+        t_per_z.all(6.0 * 16.0 * HALF_ULP) * size * t_per_z.all(2.0 * HALF_ULP).fused(size, across);
+    let Crossed { edges: [u, v, w], ends: [lowest, highest], .. } = *crossed;
     let one_over = t_per_z.all(1.0) / (u + v + w);
     let z = (u * one_over).fused(az, (v * one_over).fused(bz, w * one_over * cz));
-    let off = t_per_z.all(6.0) * error * one_over.magnitude() * (high - low);
+    let off = error * one_over.magnitude() * (high - low);
     let off = t_per_z.all(16.0 * HALF_ULP).fused(along.max(t_per_z.all(TINY)), off);
     let off = off.fused(t_per_z.magnitude(), t_per_z.all(16.0 * HALF_ULP * TINY));
     let t = z * t_per_z;
-    let smallest = u.magnitude().min(v.magnitude()).min(w.magnitude());
+    // Less than zero where they differ in sign.
+    let smallest = lowest.max(zero - highest);
     let known = error
         .max(t_per_z.all(TINY))
         .is_less(smallest)

@@ -1,7 +1,7 @@
 //! What is known of lanes before a hit is worked out: of the triangles of a block, or the rays of a packet.
 
 /// Lanes whose ray may hit its triangle in the interval that was asked for, a bit each.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Sifted {
     pub(super) maybe: u32,
     /// Those whose line crosses for certain, wherever.
@@ -16,6 +16,36 @@ impl Sifted {
     pub(super) fn surely(&self, lane: usize) -> bool {
         self.surely >> lane & 1 == 1
     }
+}
+
+/// The triangles of a block that may be hit in the interval that was asked for.
+#[derive(Clone, Copy)]
+pub(super) struct Filtered {
+    /// Those of which one may be the first.
+    pub(super) sifted: Sifted,
+    /// Others that may be hit, but later than at `late`.
+    pub(super) later: u32,
+    /// One of the first is crossed before, for certain, if this is not infinite.
+    pub(super) late: f32,
+}
+
+impl Filtered {
+    /// Where it is not known which are first.
+    #[inline(always)]
+    pub(super) fn all(sifted: Sifted) -> Self {
+        Self { sifted, later: 0, late: f32::INFINITY }
+    }
+}
+
+/// What a visitor wants of the triangles of a block.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Wants {
+    /// All hits.
+    All,
+    /// The first hit of those it accepts.
+    First,
+    /// All hits, or to know that there are some.
+    Whether,
 }
 
 /// No vector has more lanes.

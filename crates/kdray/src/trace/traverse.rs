@@ -1,6 +1,7 @@
 //! Visit the leaves along rays from front to back, with a stack \[PH04].
 
 use super::hull::Hull;
+use super::sifted::Wants;
 #[cfg(target_arch = "x86_64")]
 use super::simd::{Avx2, Avx512};
 use super::simd::{Best, Plain, Simd};
@@ -14,11 +15,10 @@ pub(super) trait Visitor {
     /// A hit of a leaf, at any `t`. Gives the `t` up to which there is more to see.
     fn hit(&mut self, hit: Hit) -> f32;
 
-    /// Whether it is enough to know that a triangle is hit, and not where.
-    const ASKS_WHETHER: bool = false;
+    const WANTS: Wants = Wants::All;
 
-    /// A triangle of a leaf that is hit in the ray's interval, if that is enough. Gives what
-    /// [`Visitor::hit`] gives.
+    /// A triangle of a leaf that is hit in the ray's interval, if that is enough: [`Wants::Whether`]. Gives
+    /// what [`Visitor::hit`] gives.
     #[inline(always)]
     fn inside(&mut self, _triangle: u32) -> f32 {
         f32::INFINITY

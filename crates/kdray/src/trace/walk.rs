@@ -2,7 +2,7 @@
 
 use super::block::Block;
 use super::prepare::lesser;
-use super::sifted::lanes;
+use super::sifted::{Filtered, Wants, lanes};
 use super::simd::Simd;
 use super::stack::Stack;
 use super::traverse::{ENOUGH, Visitor};
@@ -176,6 +176,9 @@ pub(super) fn test_blocks<S: Simd, V: Visitor>(
 }
 
 /// Shows the visitor the hits of a block.
+///
+/// Most of the time there is one. Others are tested elsewhere: in a loop the compiler would make ready whatever
+/// is the same for each.
 #[inline(always)]
 fn test_block<S: Simd, V: Visitor>(
     simd: S,
@@ -185,11 +188,12 @@ fn test_block<S: Simd, V: Visitor>(
     visitor: &mut V,
 ) -> f32 {
     visitor.test();
-    let interval = [ray.t_min, until];
-    let Some(sifted) = simd.filter(block, shear, interval, V::ASKS_WHETHER) else {
+    let Some(Filtered { sifted, later, late }) =
+        simd.filter(block, shear, [ray.t_min, until], V::WANTS)
+    else {
         return until;
     };
-    if V::ASKS_WHETHER {
+    if V::WANTS == Wants::Whether {
         for lane in lanes(sifted.inside) {
             until = lesser(until, visitor.inside(block.index(lane)));
             if until == ENOUGH {
@@ -197,15 +201,53 @@ fn test_block<S: Simd, V: Visitor>(
             }
         }
     }
-    for lane in lanes(sifted.maybe) {
-        if visitor.knows(block.index(lane)) {
-            continue;
-        }
-        let Some(hit) = simd.hit(block, lane, sifted.surely(lane), (ray, shear)) else { continue };
-        until = lesser(until, visitor.hit(hit));
+    let first = sifted.maybe.trailing_zeros() as usize;
+    until = test_lane(simd, block, (first, sifted.surely(first)), (ray, shear), until, visitor);
+    let rest = sifted.maybe & (sifted.maybe - 1);
+    // A hit need not have been wanted.
+    let rest = if until > late { rest | later } else { rest };
+    if rest == 0 || until == ENOUGH {
+        return until;
+    }
+    simd.test_lanes(block, [rest, sifted.surely], (ray, shear), until, visitor)
+}
+
+/// Shows the visitor the hits of the first of these masks of lanes; the line crosses those of the second for
+/// certain.
+#[inline(always)]
+pub(super) fn test_lanes<S: Simd, V: Visitor>(
+    simd: S,
+    block: &Block,
+    [maybe, surely]: [u32; 2],
+    ray: (&Ray, &S::Shear),
+    mut until: f32,
+    visitor: &mut V,
+) -> f32 {
+    for lane in lanes(maybe) {
+        let surely = surely >> lane & 1 == 1;
+        until = test_lane(simd, block, (lane, surely), ray, until, visitor);
         if until == ENOUGH {
-            return ENOUGH;
+            break;
         }
     }
     until
+}
+
+/// Shows the visitor the hit of a triangle, if it wants it.
+#[inline(always)]
+fn test_lane<S: Simd, V: Visitor>(
+    simd: S,
+    block: &Block,
+    (lane, surely): (usize, bool),
+    ray: (&Ray, &S::Shear),
+    until: f32,
+    visitor: &mut V,
+) -> f32 {
+    if visitor.knows(block.index(lane)) {
+        return until;
+    }
+    match simd.hit(block, lane, surely, ray) {
+        Some(hit) => lesser(until, visitor.hit(hit)),
+        None => until,
+    }
 }

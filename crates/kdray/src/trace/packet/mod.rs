@@ -11,7 +11,7 @@ mod triangles;
 use super::block::Block;
 use super::fullness::Fullness;
 use super::prepare::{Shear, lesser};
-use super::sifted::lanes;
+use super::sifted::{Wants, lanes};
 use super::simd::{Avx2, HasAvx2, HasAvx512};
 use super::stack::Stack;
 use super::traverse::{ENOUGH, Trip, Visitor};
@@ -184,7 +184,7 @@ impl<L: Vector> Packet<'_, L> {
         let until = L::of_numbers(self.proof, &self.until);
         let sifted = triangles.sift(block, place, until);
         let index = block.index(place);
-        if V::ASKS_WHETHER {
+        if V::WANTS == Wants::Whether {
             for lane in lanes(sifted.inside & mask) {
                 let Some(visitor) = &mut visitors[lane] else { continue };
                 self.until.0[lane] = visitor.inside(index);

@@ -5,11 +5,11 @@ use crate::geometry::{Hit, Ray};
 use crate::trace::block::Block;
 use crate::trace::block_ray::BlockRay;
 use crate::trace::hull::Hull;
-use crate::trace::sifted::Sifted;
+use crate::trace::sifted::{Filtered, Wants};
 use crate::trace::stack::Stack;
 use crate::trace::step::{self, Lanes};
 use crate::trace::traverse::Visitor;
-use crate::trace::walk::test_blocks;
+use crate::trace::walk::{test_blocks, test_lanes};
 use crate::trace::wide::{Child, Wide};
 
 /// For processors with AVX2.
@@ -88,10 +88,10 @@ macro_rules! simd {
                 block: &Block,
                 shear: &BlockRay,
                 interval: [f32; 2],
-                whether: bool,
-            ) -> Option<Sifted> {
+                wants: Wants,
+            ) -> Option<Filtered> {
                 // SAFETY: as above.
-                unsafe { block.filter_avx2(shear, interval, whether) }
+                unsafe { block.filter_avx2(shear, interval, wants) }
             }
 
             #[inline(always)]
@@ -127,6 +127,31 @@ macro_rules! simd {
                 }
                 // SAFETY: as above.
                 unsafe { apart(self, blocks, ray, until, visitor) }
+            }
+
+            #[inline(always)]
+            fn test_lanes<V: Visitor>(
+                self,
+                block: &Block,
+                lanes: [u32; 2],
+                ray: (&Ray, &BlockRay),
+                until: f32,
+                visitor: &mut V,
+            ) -> f32 {
+                #[inline(never)]
+                #[target_feature(enable = $features)]
+                fn apart<V: Visitor>(
+                    simd: $simd,
+                    block: &Block,
+                    lanes: [u32; 2],
+                    ray: (&Ray, &BlockRay),
+                    until: f32,
+                    visitor: &mut V,
+                ) -> f32 {
+                    test_lanes(simd, block, lanes, ray, until, visitor)
+                }
+                // SAFETY: as above.
+                unsafe { apart(self, block, lanes, ray, until, visitor) }
             }
         }
     };

@@ -7,11 +7,11 @@ mod avx;
 use super::block::Block;
 use super::hull::Hull;
 use super::prepare::{Shear, Slabs};
-use super::sifted::Sifted;
+use super::sifted::{Filtered, Wants};
 use super::stack::Stack;
 use super::step;
 use super::traverse::Visitor;
-use super::walk::test_blocks;
+use super::walk::{test_blocks, test_lanes};
 use super::wide::{Child, Wide};
 use crate::geometry::{Hit, Ray};
 #[cfg(target_arch = "x86_64")]
@@ -52,15 +52,14 @@ pub(super) trait Simd: Copy {
     /// Puts the children that are met in the interval on the stack, the nearest on top.
     fn push(self, wide: &Wide, slabs: &Self::Slabs, interval: [f32; 2], stack: &mut Stack);
 
-    /// The triangles of a block that may be hit in the interval, if any may; `whether` it is enough to know
-    /// that they are, and not where.
+    /// The triangles of a block that may be hit in the interval, if any may.
     fn filter(
         self,
         block: &Block,
         shear: &Self::Shear,
         interval: [f32; 2],
-        whether: bool,
-    ) -> Option<Sifted>;
+        wants: Wants,
+    ) -> Option<Filtered>;
 
     /// The hit in a lane, at any `t`, if there is one. `surely` says that the line crosses its triangle.
     fn hit(
@@ -81,6 +80,19 @@ pub(super) trait Simd: Copy {
         visitor: &mut V,
     ) -> f32 {
         test_blocks(self, blocks, ray, until, visitor)
+    }
+
+    /// [`test_lanes`] in a function of its own.
+    #[inline(never)]
+    fn test_lanes<V: Visitor>(
+        self,
+        block: &Block,
+        lanes: [u32; 2],
+        ray: (&Ray, &Self::Shear),
+        until: f32,
+        visitor: &mut V,
+    ) -> f32 {
+        test_lanes(self, block, lanes, ray, until, visitor)
     }
 }
 
@@ -119,8 +131,8 @@ impl Simd for Plain {
     }
 
     #[inline(always)]
-    fn filter(self, block: &Block, _: &Shear, _: [f32; 2], _: bool) -> Option<Sifted> {
-        Some(block.unknown())
+    fn filter(self, block: &Block, _: &Shear, _: [f32; 2], _: Wants) -> Option<Filtered> {
+        Some(Filtered::all(block.unknown()))
     }
 
     #[inline(always)]
@@ -247,12 +259,13 @@ impl Best {
 mod tests {
     use super::*;
     use crate::trace::noise::noise;
+    use crate::trace::sifted::Sifted;
 
     /// Filters blocks: what is said of a lane is true of its hit. Gives how many lanes may be hit,
     /// and a hash of everything that was said.
-    fn filters_what_is_hit(simd: impl Simd, whether: bool) -> (u32, u32) {
+    fn filters_what_is_hit(simd: impl Simd, wants: Wants) -> [u32; 3] {
         let mut state = 5;
-        let (mut maybes, mut hash) = (0, 0_u32);
+        let [mut maybes, mut laters, mut hash] = [0, 0, 0_u32];
         for round in 0..20_000 {
             // Up to the ends of what a mesh has, and rays from beyond.
             let size = [1.0, 1.0, 100.0, 4e9, 2e-10][round % 5];
@@ -268,17 +281,21 @@ mod tests {
             let t_max = if round % 2 == 0 { t_max } else { f32::INFINITY };
             let ray = Ray { origin, direction, t_min, t_max };
             let shear = simd.shear(&ray);
-            let said = simd.filter(&block, &shear, [t_min, t_max], whether);
-            let said = said.unwrap_or(Sifted { maybe: 0, surely: 0, inside: 0 });
+            let nothing = Filtered::all(Sifted { maybe: 0, surely: 0, inside: 0 });
+            let said = simd.filter(&block, &shear, [t_min, t_max], wants).unwrap_or(nothing);
+            let (Filtered { later, late, .. }, said) = (said, said.sifted);
+            assert!(later == 0 || wants == Wants::First && said.maybe & !later != 0, "{said:?}");
             for lane in 0..8 {
-                let [maybe, surely, inside] =
-                    [said.maybe, said.surely, said.inside].map(|bits| bits >> lane & 1 == 1);
+                let [maybe, surely, inside, is_later] =
+                    [said.maybe | later, said.surely, said.inside, later]
+                        .map(|bits| bits >> lane & 1 == 1);
                 let hit = block.hit(lane, false, &Shear::new(&ray)).filter(|_| lane < used);
                 let is_inside = hit.is_some_and(|hit| t_min <= hit.t && hit.t <= t_max);
                 let case = format!("lane {lane}: {hit:?} of {ray:?} and {:?}", corners[lane]);
                 assert!(maybe || !is_inside, "{case}");
                 assert!(hit.is_some() || !(maybe && surely), "{case}");
                 assert!(is_inside || !(maybe && inside), "{case}");
+                assert!(!is_later || hit.is_none_or(|hit| hit.t > late), "{case}");
                 if maybe {
                     let found = simd.hit(&block, lane, surely, (&ray, &shear));
                     let found = found.filter(|_| lane < used);
@@ -288,35 +305,37 @@ mod tests {
                 }
             }
             maybes += said.maybe.count_ones();
-            for bits in [said.maybe, said.surely, said.inside] {
+            laters += later.count_ones();
+            for bits in [said.maybe, said.surely, said.inside, later] {
                 hash = hash.wrapping_mul(0x0100_0193) ^ (bits & said.maybe);
             }
         }
-        (maybes, hash)
+        [maybes, laters, hash]
     }
 
     #[test]
     fn filters_say_what_is_so_and_the_same_on_every_processor() {
-        for whether in [false, true] {
-            filters_what_is_hit(Plain, whether);
+        for (wants, expected) in [Wants::All, Wants::First, Wants::Whether].into_iter().zip(SAID) {
+            filters_what_is_hit(Plain, wants);
             #[cfg(target_arch = "x86_64")]
             for said in [
-                Best::detect().avx2().map(|it| filters_what_is_hit(Avx2::from(it), whether)),
-                Best::detect().avx512().map(|it| filters_what_is_hit(Avx512::from(it), whether)),
+                Best::detect().avx2().map(|it| filters_what_is_hit(Avx2::from(it), wants)),
+                Best::detect().avx512().map(|it| filters_what_is_hit(Avx512::from(it), wants)),
             ] {
                 match said {
-                    Some(said) => assert_eq!(said, SAID[usize::from(whether)]),
+                    Some(said) => assert_eq!(said, expected),
                     None => println!("this processor has not all of AVX2 and AVX-512"),
                 }
             }
             #[cfg(target_arch = "aarch64")]
             if let Best::Neon(neon) = Best::detect() {
-                filters_what_is_hit(neon, whether);
+                filters_what_is_hit(neon, wants);
             }
         }
     }
 
-    /// What the first processor said; and where it is enough to know whether.
+    /// What the first processor said.
     #[cfg(target_arch = "x86_64")]
-    const SAID: [(u32, u32); 2] = [(26_233, 591_711_200), (26_159, 2_902_190_403)];
+    const SAID: [[u32; 3]; 3] =
+        [[26233, 0, 2105196246], [26071, 135, 1020030502], [26159, 0, 3466998211]];
 }
