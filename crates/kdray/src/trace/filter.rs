@@ -43,7 +43,9 @@ impl Block {
     ///
     /// A line that crosses a triangle often does so behind the ray, most of all where the ray starts on a
     /// surface. Where it might, or if several may be hit and the first is wanted, or to know whether there is
-    /// one is enough, bounds of `t` are asked: they are there sooner than a hit. Part of the loop that asks, as in `step/lanes.rs`.
+    /// one is enough, bounds of `t` are asked: they are there sooner than a hit.
+    ///
+    /// Part of the loop that asks, as in `step/lanes.rs`.
     ///
     /// # Safety
     ///

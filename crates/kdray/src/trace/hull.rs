@@ -72,9 +72,9 @@ impl Hull {
     #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "one way only"))]
     pub(super) fn reached(&self, rays: &[Ray], simd: Best) -> u64 {
         #[cfg(target_arch = "x86_64")]
-        if simd.avx2().is_some() {
+        if let Some(proof) = simd.avx2() {
             // SAFETY: the processor has AVX2 and FMA.
-            return unsafe { self.reached_avx2(rays) };
+            return unsafe { self.reached_avx2(proof, rays) };
         }
         let bit = |(index, ray)| u64::from(!self.is_missed(ray)) << index;
         rays.iter().enumerate().map(bit).sum()
@@ -88,7 +88,9 @@ mod avx {
 
     use super::{Hull, MARGIN};
     use crate::geometry::Ray;
+    use crate::trace::simd::HasAvx2;
     use crate::trace::step::{halves, largest, magnitude, signs};
+    use crate::trace::vector::{Arithmetic, Eight, Mask, Vector, by_axis};
 
     /// Of each axis the next.
     const NEXT: i32 = 0b11_00_10_01;
@@ -138,13 +140,37 @@ mod avx {
 
         /// [`Hull::reached`], without a jump.
         #[target_feature(enable = "avx2,fma")]
-        pub(super) fn reached_avx2(&self, rays: &[Ray]) -> u64 {
-            let mut reached = 0;
-            for (index, ray) in rays.iter().enumerate() {
+        pub(super) fn reached_avx2(&self, proof: HasAvx2, rays: &[Ray]) -> u64 {
+            let (mut reached, eights) = (0, rays.chunks_exact(8));
+            let first = 8 * eights.len();
+            for (index, ray) in eights.remainder().iter().enumerate() {
                 // SAFETY: the processor has AVX2 and FMA.
-                reached |= u64::from(!unsafe { self.is_missed_avx2(ray) }) << index;
+                reached |= u64::from(!unsafe { self.is_missed_avx2(ray) }) << (first + index);
+            }
+            for (group, rays) in eights.enumerate() {
+                reached |= u64::from(self.reached_by(Eight::of_rays(proof, rays))) << (8 * group);
             }
             reached
+        }
+
+        /// Which of eight rays, by their numbers, do not certainly [miss](Hull::is_missed) the box, a bit each.
+        #[inline(always)]
+        fn reached_by(&self, [ox, oy, oz, _, dx, dy, dz, _]: [Eight; 8]) -> u32 {
+            let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
+            let [x, y, z] = by_axis!(|axis| origin[axis].magnitude());
+            let margin = (x.max(y).max(z) + x.all(self.reach)) * x.all(MARGIN);
+            let way = by_axis!(|axis| origin[axis] - x.all(self.center[axis]));
+            let half = by_axis!(|axis| margin + x.all(self.half[axis]));
+            let length = by_axis!(|axis| direction[axis].magnitude());
+            let is_apart = by_axis!(|axis| {
+                let next = (axis + 1) % 3;
+                let across = way[axis] * direction[next] - way[next] * direction[axis];
+                let across = across.magnitude();
+                let reached = half[next].fused(length[axis], x.all(f32::MIN_POSITIVE));
+                let reached = half[axis].fused(length[next], reached);
+                reached.is_less(across).and(across.is_less(x.all(f32::INFINITY)))
+            });
+            !is_apart[0].or(is_apart[1]).or(is_apart[2]).bits() & 0xff
         }
     }
 }
@@ -159,9 +185,14 @@ mod tests {
     #[cfg(target_arch = "x86_64")]
     use crate::trace::simd::{Avx2, Simd};
 
-    /// Whether the box is missed, as every way says that there is on this processor.
+    /// Whether the box is missed, as every way says that there is on this processor, of one ray and of
+    /// several.
     fn said(hull: &Hull, ray: &Ray) -> Vec<bool> {
-        Best::each().into_iter().map(|simd| hull.reached(&[*ray], simd) == 0).collect()
+        let missed = |simd: Best| {
+            let bits = hull.reached(&[*ray; 19], simd);
+            [0, 8, 18].map(|place| bits >> place & 1 == 0)
+        };
+        Best::each().into_iter().flat_map(missed).collect()
     }
 
     /// Rays to the corners, edges and insides of triangles as large as their boxes, and past them; from the
