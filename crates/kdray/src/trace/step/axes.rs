@@ -38,44 +38,30 @@ impl Axes {
     }
 }
 
-/// By lane whether a magnitude is more than another, as integers: what is not a number is more than any.
-///
-/// # Safety
-///
-/// The processor has AVX2.
-#[inline(always)]
-unsafe fn is_more(magnitudes: __m128, than: f32) -> __m128i {
-    // SAFETY: the same.
-    unsafe { _mm_cmpgt_epi32(_mm_castps_si128(magnitudes), _mm_set1_epi32(than.to_bits() as i32)) }
-}
-
-/// The same the other way round.
-///
-/// # Safety
-///
-/// The processor has AVX2.
-#[inline(always)]
-unsafe fn is_less(magnitudes: __m128, than: f32) -> __m128i {
-    // SAFETY: the same.
-    unsafe { _mm_cmpgt_epi32(_mm_set1_epi32(than.to_bits() as i32), _mm_castps_si128(magnitudes)) }
-}
-
-/// [`Ray::is_valid`], with what [`Axes::new`] works out anyway.
+/// [`Ray::is_valid`], with what [`Axes::new`] works out anyway. Magnitudes are compared as integers: what is not
+/// a number is more than any.
 ///
 /// # Safety
 ///
 /// The processor has AVX2.
 #[inline(always)]
 pub(in crate::trace) unsafe fn is_valid(ray: &Ray) -> bool {
+    const SHORTEST: i32 = LEAST.to_bits() as i32;
+    const LONGEST: i32 = MOST.to_bits() as i32;
+    const FARTHEST: i32 = f32::MAX.to_bits() as i32;
     // SAFETY: the same.
-    let beyond = unsafe {
+    unsafe {
         let [origin, direction] = halves(ray);
         let [far, long] = [largest(magnitude(origin)), largest(magnitude(direction))];
-        let [too_far, too_long] = [is_more(far, f32::MAX), is_more(long, MOST)];
-        let beyond = _mm_or_si128(_mm_or_si128(too_far, too_long), is_less(long, LEAST));
-        signs(_mm_castsi128_ps(beyond))
-    };
-    beyond == 0 && ray.t_min <= ray.t_max
+        // The length twice, the distance, and the ends of the interval.
+        let sizes = _mm_castps_si128(_mm_blend_ps::<0b0100>(long, far));
+        let above = _mm_sub_epi32(sizes, _mm_setr_epi32(SHORTEST, SHORTEST, 0, 0));
+        let range = LONGEST - SHORTEST;
+        let most = _mm_setr_epi32(range, range, FARTHEST, 0);
+        let are_in_range = _mm_castsi128_ps(_mm_cmpeq_epi32(above, _mm_min_epu32(above, most)));
+        let is_forward = _mm_cmple_ps(origin, direction);
+        _mm_movemask_ps(_mm_blend_ps::<0b1000>(are_in_range, is_forward)) == 0b1111
+    }
 }
 
 /// A direction whose small components are larger.
