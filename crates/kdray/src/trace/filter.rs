@@ -65,11 +65,11 @@ impl Block {
         if maybe == 0 {
             return None;
         }
-        let is_one = maybe & (maybe - 1) == 0;
-        if wants == Wants::All || wants == Wants::First && is_one {
+        if wants != Wants::Whether {
             let [a, b, c] = by_axis!(|corner| corners[corner][2] * t_per_z);
-            let is_ahead = a.min(b).min(c).is_less(first).bits() & maybe == 0;
-            if is_ahead {
+            let behind = a.min(b).min(c).is_less(first).bits() & maybe;
+            let others = if wants == Wants::First { maybe & (maybe - 1) } else { 0 };
+            if behind | others == 0 {
                 let sifted = Sifted { maybe, surely: crossed.surely.bits(), inside: 0 };
                 return Some(Filtered::all(sifted));
             }
