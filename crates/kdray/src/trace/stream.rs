@@ -262,25 +262,27 @@ fn stream_with<V: Visitor>(
         walks.push((index, visitor, Walk::new(simd, ray, hull.reach, stack), Child(0)));
     }
     while !walks.is_empty() {
-        let mut place = 0;
-        while place < walks.len() {
-            let (index, visitor, walk, child) = &mut walks[place];
+        let mut are_done = false;
+        for (index, visitor, walk, child) in &mut walks {
             *child = if child.block().is_some() {
                 walk.leaf(layout, *child, visitor)
             } else {
                 walk.step(layout, *child, visitor)
             };
             if *child != Child::NONE {
-                place += 1;
-            } else if let Some((next, ray, begun)) = rays.next(&mut begin, &mut end) {
+                continue;
+            }
+            if let Some((next, ray, begun)) = rays.next(&mut begin, &mut end) {
                 walk.restart(ray, hull.reach);
                 *child = Child(0);
                 end(std::mem::replace(index, next), std::mem::replace(visitor, begun));
-                place += 1;
             } else {
-                let (index, visitor, ..) = walks.swap_remove(place);
-                end(index, visitor);
+                are_done = true;
             }
+        }
+        if are_done {
+            let done = walks.extract_if(.., |(.., child)| *child == Child::NONE);
+            done.for_each(|(index, visitor, ..)| end(index, visitor));
         }
     }
 }
