@@ -74,13 +74,7 @@ impl Block {
                 return Some(Filtered::all(sifted));
             }
         }
-        let between = crossed_between(&corners, &crossed, t_per_z, [first, last]);
-        let sifted = between.sifted();
-        if sifted.maybe == 0 {
-            return None;
-        }
-        let is_one = sifted.maybe & (sifted.maybe - 1) == 0;
-        Some(if wants == Wants::First && !is_one { between.first() } else { Filtered::all(sifted) })
+        crossed_between(&corners, &crossed, t_per_z, [first, last]).filtered(wants)
     }
 
     /// Of the lanes whose edge functions do not differ in sign: all, those whose are not zero, and, if

@@ -2,7 +2,7 @@
 
 use super::block::Block;
 use super::prepare::{Shear, Slabs};
-use super::sift::{sheared, sift};
+use super::sift::{crossed, crossed_between, sheared};
 use super::sifted::{Filtered, Wants};
 use super::simd::{Neon, Simd};
 use super::stack::Stack;
@@ -130,15 +130,18 @@ impl Simd for Neon {
         block: &Block,
         ray: &ShearLanes,
         [t_min, t_max]: [f32; 2],
-        _: Wants,
+        wants: Wants,
     ) -> Option<Filtered> {
         let corners = block.corners().each_ref().map(|rows| {
             let corner = ray.shear.axes.map(|axis| self.load(&rows[axis]));
             sheared(corner, &ray.origin, &ray.slope)
         });
         let interval = [self.all(t_min), self.all(t_max)];
-        let sifted = sift(&corners, ray.t_per_z, interval);
-        (sifted.maybe != 0).then_some(Filtered::all(sifted))
+        let crossed = crossed(&corners);
+        if crossed.maybe.bits() == 0 {
+            return None;
+        }
+        crossed_between(&corners, &crossed, ray.t_per_z, interval).filtered(wants)
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Which triangles a ray may hit, or which rays a triangle, many at once.
 
-use super::sifted::{Filtered, Sifted};
+use super::sifted::{Filtered, Sifted, Wants};
 use super::vector::{Mask, Vector};
 
 /// A corner in ray space, with the arithmetic of [`Shear`](super::prepare::Shear).
@@ -18,6 +18,7 @@ fn edge<V: Vector>(p: [V; 3], q: [V; 3]) -> V {
 /// The lanes whose edge functions do not differ in sign, with the arithmetic of
 /// [`crossing`](super::intersect::crossing), but for those that are hit before or after the interval
 /// for certain. Corners are in ray space.
+#[cfg(target_arch = "x86_64")]
 #[inline(always)]
 pub(super) fn sift<V: Vector>(corners: &[[V; 3]; 3], t_per_z: V, interval: [V; 2]) -> Sifted {
     let crossed = crossed(corners);
@@ -86,11 +87,23 @@ impl<V: Vector> Between<V> {
         Sifted { maybe, surely: self.surely.bits(), inside: self.inside.bits() & maybe }
     }
 
-    /// The same, with those apart that are behind another.
-    #[cfg(target_arch = "x86_64")]
+    /// What a visitor wants of them, if there are any.
     #[inline(always)]
-    pub(super) fn first(&self) -> Filtered {
+    pub(super) fn filtered(&self, wants: Wants) -> Option<Filtered> {
         let sifted = self.sifted();
+        if sifted.maybe == 0 {
+            return None;
+        }
+        let is_one = sifted.maybe & (sifted.maybe - 1) == 0;
+        if wants != Wants::First || is_one {
+            return Some(Filtered::all(sifted));
+        }
+        Some(self.first(sifted))
+    }
+
+    /// Those apart that are behind another.
+    #[inline(always)]
+    fn first(&self, sifted: Sifted) -> Filtered {
         let late = V::pick(self.maybe, self.late, self.late.all(f32::INFINITY)).least();
         let later = self.early.all(late).is_less(self.early).bits() & sifted.maybe;
         Filtered { sifted: Sifted { maybe: sifted.maybe & !later, ..sifted }, later, late }

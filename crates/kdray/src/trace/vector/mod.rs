@@ -55,8 +55,7 @@ pub(in crate::trace) trait Vector: Arithmetic<Number = f32> {
     /// The magnitude of these with the signs of those.
     #[cfg(target_arch = "x86_64")]
     fn with_signs_of(self, signs: Self) -> Self;
-    /// The least number; none is NaN.
-    #[cfg(target_arch = "x86_64")]
+    /// The least number; any, if one is NaN.
     fn least(self) -> f32;
     /// The greatest number; none is NaN.
     #[cfg(target_arch = "x86_64")]
