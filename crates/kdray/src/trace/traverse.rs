@@ -15,6 +15,7 @@ pub(super) trait Visitor {
     /// A hit of a leaf, at any `t`. Gives the `t` up to which there is more to see.
     fn hit(&mut self, hit: Hit) -> f32;
 
+    /// What it wants of the triangles of a block. What it does not want need not be shown.
     const WANTS: Wants = Wants::All;
 
     /// A triangle of a leaf that is hit in the ray's interval, if that is enough: [`Wants::Whether`]. Gives

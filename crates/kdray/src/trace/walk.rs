@@ -177,8 +177,8 @@ pub(super) fn test_blocks<S: Simd, V: Visitor>(
 
 /// Shows the visitor the hits of a block.
 ///
-/// Most of the time there is one. Others are tested elsewhere: in a loop the compiler would make ready whatever
-/// is the same for each.
+/// Of those that may be the first there is one, most of the time. Others are tested elsewhere: in a loop the
+/// compiler would make ready whatever is the same for each.
 #[inline(always)]
 fn test_block<S: Simd, V: Visitor>(
     simd: S,
@@ -200,6 +200,16 @@ fn test_block<S: Simd, V: Visitor>(
                 return ENOUGH;
             }
         }
+    }
+    if V::WANTS != Wants::First {
+        return test_lanes(
+            simd,
+            block,
+            [sifted.maybe, sifted.surely],
+            (ray, shear),
+            until,
+            visitor,
+        );
     }
     let first = sifted.maybe.trailing_zeros() as usize;
     until = test_lane(simd, block, (first, sifted.surely(first)), (ray, shear), until, visitor);
