@@ -169,7 +169,7 @@ impl<F> Crossings<F> {
     }
 
     /// How many triangles were hit.
-    pub(super) fn count(mut self) -> usize {
+    pub(super) fn count(&mut self) -> usize {
         self.crossed.sort_unstable();
         self.crossed.dedup();
         self.crossed.len()

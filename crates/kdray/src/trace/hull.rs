@@ -68,7 +68,8 @@ impl Hull {
         (0..3).any(is_apart)
     }
 
-    /// Which of at most 64 rays do not certainly miss the box, a bit each.
+    /// Which of at most 64 rays are valid and do not certainly miss the box, a bit each: of those in a batch
+    /// that come here together, it costs less to ask all than to be surprised by some.
     #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "one way only"))]
     pub(super) fn reached(&self, rays: &[Ray], simd: Best) -> u64 {
         #[cfg(target_arch = "x86_64")]
@@ -76,7 +77,9 @@ impl Hull {
             // SAFETY: the processor has AVX2 and FMA.
             return unsafe { self.reached_avx2(proof, rays) };
         }
-        let bit = |(index, ray)| u64::from(!self.is_missed(ray)) << index;
+        let bit = |(index, ray): (usize, &Ray)| {
+            u64::from(ray.is_valid() && !self.is_missed(ray)) << index
+        };
         rays.iter().enumerate().map(bit).sum()
     }
 }
@@ -87,9 +90,9 @@ mod avx {
     use std::arch::x86_64::*;
 
     use super::{Hull, MARGIN};
-    use crate::geometry::Ray;
+    use crate::geometry::{LEAST, MOST, Ray};
     use crate::trace::simd::HasAvx2;
-    use crate::trace::step::{halves, largest, magnitude, signs};
+    use crate::trace::step::{halves, is_valid, largest, magnitude, signs};
     use crate::trace::vector::{Arithmetic, Eight, Mask, Vector, by_axis};
 
     /// Of each axis the next.
@@ -145,7 +148,8 @@ mod avx {
             let first = 8 * eights.len();
             for (index, ray) in eights.remainder().iter().enumerate() {
                 // SAFETY: the processor has AVX2 and FMA.
-                reached |= u64::from(!unsafe { self.is_missed_avx2(ray) }) << (first + index);
+                let is_reached = unsafe { is_valid(ray) && !self.is_missed_avx2(ray) };
+                reached |= u64::from(is_reached) << (first + index);
             }
             for (group, rays) in eights.enumerate() {
                 reached |= u64::from(self.reached_by(Eight::of_rays(proof, rays))) << (8 * group);
@@ -153,15 +157,25 @@ mod avx {
             reached
         }
 
-        /// Which of eight rays, by their numbers, do not certainly [miss](Hull::is_missed) the box, a bit each.
+        /// Which of eight rays, by their numbers, are [valid](Ray::is_valid) and do not certainly
+        /// [miss](Hull::is_missed) the box, a bit each.
         #[inline(always)]
-        fn reached_by(&self, [ox, oy, oz, _, dx, dy, dz, _]: [Eight; 8]) -> u32 {
+        fn reached_by(&self, [ox, oy, oz, t_min, dx, dy, dz, t_max]: [Eight; 8]) -> u32 {
             let (origin, direction) = ([ox, oy, oz], [dx, dy, dz]);
-            let [x, y, z] = by_axis!(|axis| origin[axis].magnitude());
+            let far = by_axis!(|axis| origin[axis].magnitude());
+            let [x, y, z] = far;
             let margin = (x.max(y).max(z) + x.all(self.reach)) * x.all(MARGIN);
             let way = by_axis!(|axis| origin[axis] - x.all(self.center[axis]));
             let half = by_axis!(|axis| margin + x.all(self.half[axis]));
             let length = by_axis!(|axis| direction[axis].magnitude());
+            let in_range = by_axis!(|axis| {
+                // Not so if they are not numbers.
+                let is_near = far[axis].is_at_most(x.all(f32::MAX));
+                is_near.and(length[axis].is_at_most(x.all(MOST)))
+            });
+            let longest = length[0].max(length[1]).max(length[2]);
+            let is_valid = x.all(LEAST).is_at_most(longest).and(t_min.is_at_most(t_max));
+            let is_valid = is_valid.and(in_range[0]).and(in_range[1]).and(in_range[2]);
             let is_apart = by_axis!(|axis| {
                 let next = (axis + 1) % 3;
                 let across = way[axis] * direction[next] - way[next] * direction[axis];
@@ -170,7 +184,7 @@ mod avx {
                 let reached = half[axis].fused(length[next], reached);
                 reached.is_less(across).and(across.is_less(x.all(f32::INFINITY)))
             });
-            !is_apart[0].or(is_apart[1]).or(is_apart[2]).bits() & 0xff
+            is_valid.and_not(is_apart[0].or(is_apart[1]).or(is_apart[2])).bits()
         }
     }
 }
@@ -185,14 +199,14 @@ mod tests {
     #[cfg(target_arch = "x86_64")]
     use crate::trace::simd::{Avx2, Simd};
 
-    /// Whether the box is missed, as every way says that there is on this processor, of one ray and of
-    /// several.
+    /// Whether nothing is hit for certain, as every way says that there is on this processor, of one ray and
+    /// of several.
     fn said(hull: &Hull, ray: &Ray) -> Vec<bool> {
-        let missed = |simd: Best| {
+        let nothing = |simd: Best| {
             let bits = hull.reached(&[*ray; 19], simd);
             [0, 8, 18].map(|place| bits >> place & 1 == 0)
         };
-        Best::each().into_iter().flat_map(missed).collect()
+        Best::each().into_iter().flat_map(nothing).collect()
     }
 
     /// Rays to the corners, edges and insides of triangles as large as their boxes, and past them; from the
@@ -243,15 +257,39 @@ mod tests {
 
     /// From and to the ends of what is valid, and beyond, along the diagonal through the middle.
     #[test]
-    fn of_what_is_out_of_range_nothing_is_certain() {
+    fn of_what_is_out_of_range_nothing_is_certain_if_it_is_valid() {
         let hull = Hull::new(&Aabb { lower: [-1.0; 3], upper: [1.0; 3] });
         for origin in [f32::MAX, -f32::MAX, f32::INFINITY, f32::NAN, 1e20] {
             for direction in [LEAST, 1.0, -1.0, MOST, f32::INFINITY, f32::NAN] {
                 let ray = Ray::new([origin; 3], [direction; 3]);
                 let said = said(&hull, &ray);
-                assert!(!said.contains(&true), "{said:?}: {ray:?}");
+                assert!(said.iter().all(|said| *said != ray.is_valid()), "{said:?}: {ray:?}");
             }
         }
+    }
+
+    /// In a box that no ray misses, with the ends of what is valid, and what is beyond, on every axis.
+    #[test]
+    fn rays_that_are_not_valid_hit_nothing() {
+        let hull = Hull::new(&Aabb { lower: [-1e38; 3], upper: [1e38; 3] });
+        let far = [0.0, -f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN, -f32::NAN];
+        let [below, above] = [LEAST.next_down(), MOST.next_up()];
+        let long = [0.0, -0.0, LEAST, -LEAST, below, 1.0, -MOST, above, -above, f32::NAN];
+        let ends = [0.0, 1.0, -1.0, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+        let (mut state, mut valid) = (41, 0);
+        for _ in 0..60_000 {
+            let mut pick = |from: &[f32]| from[(from.len() as f32 * noise(&mut state)) as usize];
+            // Most origins are sound, or few rays would be.
+            let origin =
+                [(); 3].map(|()| if pick(&[0.0, 0.0, 1.0]) > 0.0 { pick(&far) } else { 2.0 });
+            let direction = [(); 3].map(|()| pick(&long));
+            let [t_min, t_max] = [(); 2].map(|()| pick(&ends));
+            let ray = Ray { origin, t_min, direction, t_max };
+            let said = said(&hull, &ray);
+            assert!(said.iter().all(|said| *said != ray.is_valid()), "{said:?}: {ray:?}");
+            valid += u32::from(ray.is_valid());
+        }
+        assert!((2_000..40_000).contains(&valid), "{valid} were valid");
     }
 
     #[test]

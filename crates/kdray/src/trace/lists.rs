@@ -34,13 +34,12 @@ pub(super) fn first_hits<F: Fn(u32) -> bool>(
     if room.len() < rays.len() {
         room.resize_with(rays.len(), Vec::new);
     }
+    room[..rays.len()].iter_mut().for_each(Vec::clear);
     let lists = Cell::from_mut(&mut room[..rays.len()]).as_slice_of_cells();
     let begin = |index: usize, ray: &Ray| {
-        let mut list = lists[index].take();
-        list.clear();
-        (limit > 0 && ray.is_valid()).then(|| FirstHits::new(ray, limit, accept(index), list))
+        (limit > 0).then(|| FirstHits::new(ray, limit, accept(index), lists[index].take()))
     };
-    trace(trip, rays, begin, |index, first| lists[index].set(first.hits));
+    trace(trip, rays, begin, |index, first| lists[index].set(std::mem::take(&mut first.hits)));
     room[..rays.len()].iter().enumerate().for_each(|(index, list)| end(index, list));
 }
 
@@ -57,8 +56,7 @@ pub(super) fn count_hits<F: Fn(u32) -> bool>(
         // SAFETY: the processor has AVX2.
         return unsafe { wave::trace_avx2(proof, trip, rays, accept, end) };
     }
-    let begin =
-        |index: usize, ray: &Ray| ray.is_valid().then(|| Crossings::new(ray, accept(index)));
+    let begin = |index: usize, ray: &Ray| Some(Crossings::new(ray, accept(index)));
     trace(trip, rays, begin, |index, crossings| end(index, crossings.count()));
 }
 

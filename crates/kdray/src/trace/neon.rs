@@ -85,6 +85,7 @@ fn push(wide: &Wide, octant: usize, met: &Met, stack: &mut Stack) {
 
 impl Simd for Neon {
     type Slabs = SlabLanes;
+    type Ready = SlabLanes;
     type Shear = ShearLanes;
 
     #[inline(always)]
@@ -98,6 +99,11 @@ impl Simd for Neon {
             backward: slabs.backward,
             octant: slabs.octant(),
         }
+    }
+
+    #[inline(always)]
+    fn ready(self, ray: &Ray, reach: f32) -> SlabLanes {
+        self.slabs(ray, reach)
     }
 
     #[inline(always)]
@@ -120,8 +126,8 @@ impl Simd for Neon {
     }
 
     #[inline(always)]
-    fn push(self, wide: &Wide, slabs: &SlabLanes, interval: [f32; 2], stack: &mut Stack) {
-        push(wide, slabs.octant, &self.meet(wide, slabs, interval), stack);
+    fn push(self, wide: &Wide, ready: &SlabLanes, interval: [f32; 2], stack: &mut Stack) {
+        push(wide, ready.octant, &self.meet(wide, ready, interval), stack);
     }
 
     #[inline(always)]

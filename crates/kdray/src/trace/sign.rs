@@ -103,10 +103,9 @@ impl Tracer {
         // One that goes along with the others and sees nothing.
         let nowhere = ways.iter().flatten().next().copied().unwrap_or(Ray::new([0.0; 3], [1.0; 3]));
         let rays: Vec<Ray> = ways.iter().map(|way| way.unwrap_or(nowhere)).collect();
-        let begin = |index: usize, ray: &Ray| {
-            (ways[index].is_some() && ray.is_valid()).then(|| Crossings::new(ray, |_| true))
-        };
-        in_packets(&self.trip, &rays, begin, |index, crossings: Crossings<_>| {
+        let begin =
+            |index: usize, ray: &Ray| ways[index].is_some().then(|| Crossings::new(ray, |_| true));
+        in_packets(&self.trip, &rays, begin, |index, crossings: &mut Crossings<_>| {
             inside[index] = crossings.count() % 2 == 1;
         });
     }

@@ -25,12 +25,13 @@ use crate::geometry::Ray;
 const WALKS: usize = 12;
 
 /// Walks all `rays`. A ray's visitor comes from `begin`; `end` gets it, with the ray's index, when
-/// there is nothing more to visit. `begin` may pass over a ray.
+/// there is nothing more to visit. `begin` may pass over a ray; rays that can hit nothing may be passed
+/// over without it.
 pub(super) fn trace<V: Visitor>(
     trip: &Trip,
     rays: &[Ray],
     begin: impl FnMut(usize, &Ray) -> Option<V>,
-    end: impl FnMut(usize, V),
+    end: impl FnMut(usize, &mut V),
 ) {
     if go_together(trip, rays) {
         return in_packets(trip, rays, begin, end);
@@ -45,13 +46,13 @@ fn apart<V: Visitor>(
     rays: &[Ray],
     are_far: bool,
     begin: impl FnMut(usize, &Ray) -> Option<V>,
-    end: impl FnMut(usize, V),
+    end: impl FnMut(usize, &mut V),
 ) {
     let sample = Sample::new(trip, rays);
     if !sample.is_worth_turns(are_far) {
         return one_by_one(trip, rays, begin, end);
     }
-    let rays = Waiting::new(trip, rays, sample.often_misses());
+    let rays = Waiting::new(trip, rays);
     #[cfg(target_arch = "x86_64")]
     if let Some(proof) = trip.simd.avx512() {
         // SAFETY: the processor has AVX-512.
@@ -81,7 +82,7 @@ pub(super) fn in_packets<V: Visitor>(
     trip: &Trip,
     rays: &[Ray],
     mut begin: impl FnMut(usize, &Ray) -> Option<V>,
-    mut end: impl FnMut(usize, V),
+    mut end: impl FnMut(usize, &mut V),
 ) {
     let mut visitors = [const { None }; PACKET];
     let mut fullness = Fullness::default();
@@ -92,11 +93,11 @@ pub(super) fn in_packets<V: Visitor>(
             return apart(trip, &rays[first..], true, begin, |index, it| end(first + index, it));
         }
         for (lane, (visitor, ray)) in visitors.iter_mut().zip(packet).enumerate() {
-            *visitor = begin(PACKET * index + lane, ray);
+            *visitor = if ray.is_valid() { begin(PACKET * index + lane, ray) } else { None };
         }
         fullness.add(&sixteen(trip, packet, &mut visitors[..packet.len()]));
-        for (lane, visitor) in visitors.iter_mut().enumerate() {
-            if let Some(visitor) = visitor.take() {
+        for (lane, visitor) in visitors[..packet.len()].iter_mut().enumerate() {
+            if let Some(visitor) = visitor {
                 end(PACKET * index + lane, visitor);
             }
         }
@@ -144,12 +145,12 @@ fn one_by_one<V: Visitor>(
     trip: &Trip,
     rays: &[Ray],
     mut begin: impl FnMut(usize, &Ray) -> Option<V>,
-    mut end: impl FnMut(usize, V),
+    mut end: impl FnMut(usize, &mut V),
 ) {
     for (index, ray) in rays.iter().enumerate() {
         if let Some(mut visitor) = begin(index, ray) {
             traverse(trip, ray, &mut visitor);
-            end(index, visitor);
+            end(index, &mut visitor);
         }
     }
 }
@@ -185,11 +186,6 @@ impl Sample {
         // Where both were as fast, over thirteen scenes.
         let least = if are_far { 2 } else { 8 };
         self.steps > least * (self.rays - self.missing)
-    }
-
-    /// Whether so many pass beside everything that it is worth asking all of them.
-    fn often_misses(&self) -> bool {
-        8 * self.missing > self.rays
     }
 }
 
@@ -229,7 +225,7 @@ fn stream_avx2<V: Visitor>(
     trip: &Trip,
     rays: Waiting,
     begin: impl FnMut(usize, &Ray) -> Option<V>,
-    end: impl FnMut(usize, V),
+    end: impl FnMut(usize, &mut V),
 ) {
     stream_with(simd, trip, rays, begin, end);
 }
@@ -241,7 +237,7 @@ fn stream_avx512<V: Visitor>(
     trip: &Trip,
     rays: Waiting,
     begin: impl FnMut(usize, &Ray) -> Option<V>,
-    end: impl FnMut(usize, V),
+    end: impl FnMut(usize, &mut V),
 ) {
     stream_with(simd, trip, rays, begin, end);
 }
@@ -252,37 +248,43 @@ fn stream_with<V: Visitor>(
     trip: &Trip,
     mut rays: Waiting,
     mut begin: impl FnMut(usize, &Ray) -> Option<V>,
-    mut end: impl FnMut(usize, V),
+    mut end: impl FnMut(usize, &mut V),
 ) {
     let Trip { layout, hull, .. } = trip;
     let mut stacks: Vec<Stack> = std::iter::repeat_with(Stack::new).take(WALKS).collect();
     let mut walks = Vec::with_capacity(WALKS);
+    let mut next = || loop {
+        let (index, ray) = rays.next()?;
+        if let Some(visitor) = begin(index, ray) {
+            return Some((index, ray, visitor));
+        }
+    };
     for stack in &mut stacks {
-        let Some((index, ray, visitor)) = rays.next(&mut begin, &mut end) else { break };
+        let Some((index, ray, visitor)) = next() else { break };
         walks.push((index, visitor, Walk::new(simd, ray, hull.reach, stack), Child(0)));
     }
     while !walks.is_empty() {
         let mut are_done = false;
         for (index, visitor, walk, child) in &mut walks {
-            *child = if child.block().is_some() {
+            let below = if child.block().is_some() {
                 walk.leaf(layout, *child, visitor)
             } else {
                 walk.step(layout, *child, visitor)
             };
-            if *child != Child::NONE {
+            if let Some(below) = below {
+                *child = below;
                 continue;
             }
-            if let Some((next, ray, begun)) = rays.next(&mut begin, &mut end) {
+            end(*index, visitor);
+            if let Some((other, ray, begun)) = next() {
                 walk.restart(ray, hull.reach);
-                *child = Child(0);
-                end(std::mem::replace(index, next), std::mem::replace(visitor, begun));
+                (*index, *visitor, *child) = (other, begun, Child(0));
             } else {
-                are_done = true;
+                (*child, are_done) = (Child::NONE, true);
             }
         }
         if are_done {
-            let done = walks.extract_if(.., |(.., child)| *child == Child::NONE);
-            done.for_each(|(index, visitor, ..)| end(index, visitor));
+            walks.retain(|(.., child)| *child != Child::NONE);
         }
     }
 }

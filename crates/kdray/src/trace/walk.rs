@@ -70,9 +70,10 @@ pub(super) fn visit_below<S: Simd>(
 pub(super) struct Walk<'a, S: Simd> {
     simd: S,
     ray: &'a Ray,
-    slabs: S::Slabs,
+    ready: S::Ready,
     shear: Option<S::Shear>,
     stack: &'a mut Stack,
+    t_min: f32,
     until: f32,
 }
 
@@ -80,9 +81,10 @@ impl<'a, S: Simd> Walk<'a, S> {
     /// A ray at the root.
     #[inline(always)]
     pub(super) fn new(simd: S, ray: &'a Ray, reach: f32, stack: &'a mut Stack) -> Self {
-        let slabs = simd.slabs(ray, reach);
+        let ready = simd.ready(ray, reach);
         stack.clear();
-        Self { simd, ray, slabs, shear: None, stack, until: ray.t_max }
+        let Ray { t_min, t_max, .. } = *ray;
+        Self { simd, ray, ready, shear: None, stack, t_min, until: t_max }
     }
 
     /// Goes on with another ray, at the root.
@@ -90,9 +92,9 @@ impl<'a, S: Simd> Walk<'a, S> {
     pub(super) fn restart(&mut self, ray: &'a Ray, reach: f32) {
         self.stack.clear();
         self.ray = ray;
-        self.slabs = self.simd.slabs(ray, reach);
+        self.ready = self.simd.ready(ray, reach);
         self.shear = None;
-        self.until = ray.t_max;
+        (self.t_min, self.until) = (ray.t_min, ray.t_max);
     }
 
     /// Visits a node, and gives what comes next.
@@ -102,13 +104,13 @@ impl<'a, S: Simd> Walk<'a, S> {
         layout: &Layout,
         child: Child,
         visitor: &mut impl Visitor,
-    ) -> Child {
+    ) -> Option<Child> {
         visitor.step();
         // SAFETY: children of a layout are in it.
         let wide = unsafe { layout.wides.get_unchecked(child.0 as usize) };
-        let interval = [self.ray.t_min, self.until];
-        self.simd.push(wide, &self.slabs, interval, self.stack);
-        self.next(layout)
+        let stack = &mut *self.stack;
+        self.simd.push(wide, &self.ready, [self.t_min, self.until], stack);
+        next(layout, stack, self.until)
     }
 
     /// Visits a leaf, and gives what comes next.
@@ -118,7 +120,7 @@ impl<'a, S: Simd> Walk<'a, S> {
         layout: &Layout,
         child: Child,
         visitor: &mut impl Visitor,
-    ) -> Child {
+    ) -> Option<Child> {
         visitor.leaf();
         let shear = self.shear.get_or_insert_with(|| self.simd.shear(self.ray));
         let first = child.block().unwrap_or(0);
@@ -126,16 +128,16 @@ impl<'a, S: Simd> Walk<'a, S> {
         let blocks = unsafe { layout.blocks.get_unchecked(first..) };
         let (leaf, ray) = ((blocks, child.is_one()), (self.ray, &*shear));
         self.until = test_leaf(self.simd, leaf, ray, self.until, visitor);
-        self.next(layout)
+        next(layout, self.stack, self.until)
     }
+}
 
-    /// What comes next, or [`Child::NONE`]; asks for its memory.
-    #[inline(always)]
-    fn next(&mut self, layout: &Layout) -> Child {
-        let Some(next) = self.stack.pop(self.until) else { return Child::NONE };
-        layout.prefetch(next);
-        next
-    }
+/// What comes next on the way; asks for its memory.
+#[inline(always)]
+fn next(layout: &Layout, stack: &mut Stack, until: f32) -> Option<Child> {
+    let next = stack.pop(until)?;
+    layout.prefetch(next);
+    Some(next)
 }
 
 /// Shows the visitor the hits of a leaf; gives the `t` up to which there is more to see.

@@ -16,13 +16,13 @@ use crate::trace::traverse::Visitor;
 impl Batch<'_> {
     /// Writes to `hits[i]` the [closest hit](crate::Tracer::closest_hit) of `rays[i]`.
     pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) -> Result<(), BatchError> {
-        let begin = |index: usize, ray: &Ray| Closest::new(ray, self.accept(index));
+        let begin = |except, ray: &Ray| Closest::new(ray, self.accept(except));
         self.ask(rays, hits, begin, |it| it.hit)
     }
 
     /// Writes to `hits[i]` whether `rays[i]` [hits anything](crate::Tracer::any_hit).
     pub fn any_hits(&self, rays: &[Ray], hits: &mut [bool]) -> Result<(), BatchError> {
-        let begin = |index: usize, ray: &Ray| Any::new(ray, self.accept(index));
+        let begin = |except, ray: &Ray| Any::new(ray, self.accept(except));
         self.ask(rays, hits, begin, |it| it.found)
     }
 
@@ -31,7 +31,7 @@ impl Batch<'_> {
         self.check_except(rays);
         let ask = |chunk: &Chunk<Ray>, counts: &mut [u32]| {
             counts.fill(0);
-            let accept = |place: usize| self.accept((chunk.index)(place));
+            let accept = |place: usize| self.accept(self.except(|| (chunk.index)(place)));
             let end = |place: usize, count| counts[place] = count as u32;
             lists::count_hits(&self.tracer.trip, chunk.queries, accept, end);
         };
@@ -51,7 +51,7 @@ impl Batch<'_> {
         // No ray hits more triangles than there are: without a limit none needs to go from front to back.
         let limit = if limit < self.tracer.triangle_count { limit } else { usize::MAX };
         let ask = |first: usize, rays: &[Ray], found: &mut Found<Hit>| {
-            let accept = |index: usize| self.accept(first + index);
+            let accept = |index: usize| self.accept(self.except(|| first + index));
             let mut room = std::mem::take(&mut found.room);
             let end = |_: usize, hits: &[Hit]| found.add(hits);
             lists::first_hits(&self.tracer.trip, rays, limit, accept, &mut room, end);
@@ -69,21 +69,21 @@ impl Batch<'_> {
         self.first_hits(rays, usize::MAX, sink)
     }
 
-    /// Writes to `answers[i]` what `answer` makes of the visitor that `begin` gives for `rays[i]`,
-    /// when it has seen what the ray comes to.
+    /// Writes to `answers[i]` what `answer` makes of the visitor that `begin` gives for `rays[i]` and the
+    /// triangle that it does not see, when it has seen what the ray comes to.
     fn ask<V: Visitor, A: Default + Send>(
         &self,
         rays: &[Ray],
         answers: &mut [A],
-        begin: impl Fn(usize, &Ray) -> V + Sync,
-        answer: impl Fn(V) -> A + Sync,
+        begin: impl Fn(Option<u32>, &Ray) -> V + Sync,
+        answer: impl Fn(&V) -> A + Sync,
     ) -> Result<(), BatchError> {
         self.check_except(rays);
         let trip = &self.tracer.trip;
         let ask = |chunk: &Chunk<Ray>, answers: &mut [A]| {
             answers.fill_with(A::default);
             let begin =
-                |place: usize, ray: &Ray| ray.is_valid().then(|| begin((chunk.index)(place), ray));
+                |place: usize, ray: &Ray| Some(begin(self.except(|| (chunk.index)(place)), ray));
             trace(trip, chunk.queries, begin, |index, visitor| answers[index] = answer(visitor));
         };
         let reorder = self.options.reorder;
@@ -96,12 +96,17 @@ impl Batch<'_> {
         }
     }
 
-    /// Which triangles the ray with this index sees.
-    fn accept(&self, index: usize) -> impl Fn(u32) -> bool + use<'_> {
-        let except = self.options.except.map(|except| except[index]);
-        let visible = self.options.visible;
+    /// The triangle that a ray does not see, by its index, which is asked for only if there is one.
+    fn except(&self, index: impl FnOnce() -> usize) -> Option<u32> {
+        self.options.except.map(|except| except[index()])
+    }
+
+    /// Which triangles a ray sees that does not see one of them.
+    fn accept(&self, except: Option<u32>) -> impl Fn(u32) -> bool + use<'_> {
+        let options = &self.options;
         move |triangle| {
-            Some(triangle) != except && visible.is_none_or(|visible| visible[triangle as usize])
+            let is_visible = |visible: &[bool]| visible[triangle as usize];
+            Some(triangle) != except && options.visible.is_none_or(is_visible)
         }
     }
 }

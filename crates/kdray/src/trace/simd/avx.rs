@@ -7,7 +7,7 @@ use crate::trace::block_ray::BlockRay;
 use crate::trace::hull::Hull;
 use crate::trace::sifted::{Filtered, Wants};
 use crate::trace::stack::Stack;
-use crate::trace::step::{self, Lanes};
+use crate::trace::step::{self, Lanes, Ready};
 use crate::trace::traverse::Visitor;
 use crate::trace::walk::{test_blocks, test_lanes};
 use crate::trace::wide::{Child, Wide};
@@ -38,6 +38,7 @@ macro_rules! simd {
 
         impl Simd for $simd {
             type Slabs = Lanes;
+            type Ready = Ready;
             type Shear = BlockRay;
 
             #[inline(always)]
@@ -59,6 +60,12 @@ macro_rules! simd {
             }
 
             #[inline(always)]
+            fn ready(self, ray: &Ray, reach: f32) -> Ready {
+                // SAFETY: as above.
+                unsafe { Ready::new(ray, reach) }
+            }
+
+            #[inline(always)]
             fn shear(self, ray: &Ray) -> BlockRay {
                 // SAFETY: as above.
                 unsafe { BlockRay::new(ray) }
@@ -77,9 +84,9 @@ macro_rules! simd {
             }
 
             #[inline(always)]
-            fn push(self, wide: &Wide, slabs: &Lanes, interval: [f32; 2], stack: &mut Stack) {
+            fn push(self, wide: &Wide, ready: &Ready, interval: [f32; 2], stack: &mut Stack) {
                 // SAFETY: as above.
-                unsafe { step::$push(wide, slabs, interval, stack) }
+                unsafe { step::$push(wide, ready, interval, stack) }
             }
 
             #[inline(always)]

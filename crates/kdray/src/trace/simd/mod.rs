@@ -21,6 +21,8 @@ pub(super) use avx::{Avx2, Avx512};
 pub(super) trait Simd: Copy {
     /// A ray ready for boxes.
     type Slabs;
+    /// The same, of one among many.
+    type Ready;
     /// A ray ready for triangles.
     type Shear;
 
@@ -38,6 +40,8 @@ pub(super) trait Simd: Copy {
 
     fn slabs(self, ray: &Ray, reach: f32) -> Self::Slabs;
 
+    fn ready(self, ray: &Ray, reach: f32) -> Self::Ready;
+
     fn shear(self, ray: &Ray) -> Self::Shear;
 
     /// The nearest child that is met in the interval; the others go on the stack.
@@ -50,7 +54,7 @@ pub(super) trait Simd: Copy {
     ) -> Option<Child>;
 
     /// Puts the children that are met in the interval on the stack, the nearest on top.
-    fn push(self, wide: &Wide, slabs: &Self::Slabs, interval: [f32; 2], stack: &mut Stack);
+    fn push(self, wide: &Wide, ready: &Self::Ready, interval: [f32; 2], stack: &mut Stack);
 
     /// The triangles of a block that may be hit in the interval, if any may.
     fn filter(
@@ -102,11 +106,17 @@ pub(super) struct Plain;
 
 impl Simd for Plain {
     type Slabs = Slabs;
+    type Ready = Slabs;
     type Shear = Shear;
 
     #[inline(always)]
     fn slabs(self, ray: &Ray, reach: f32) -> Slabs {
         Slabs::new(ray, reach)
+    }
+
+    #[inline(always)]
+    fn ready(self, ray: &Ray, reach: f32) -> Slabs {
+        self.slabs(ray, reach)
     }
 
     #[inline(always)]
@@ -126,8 +136,8 @@ impl Simd for Plain {
     }
 
     #[inline(always)]
-    fn push(self, wide: &Wide, slabs: &Slabs, interval: [f32; 2], stack: &mut Stack) {
-        step::push(wide, slabs.octant(), &step::meet(wide, slabs, interval), stack);
+    fn push(self, wide: &Wide, ready: &Slabs, interval: [f32; 2], stack: &mut Stack) {
+        step::push(wide, ready.octant(), &step::meet(wide, ready, interval), stack);
     }
 
     #[inline(always)]

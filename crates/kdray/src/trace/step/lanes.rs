@@ -8,6 +8,7 @@ use std::arch::x86_64::*;
 
 use super::axes::Axes;
 use super::nearer_of_two;
+use super::ready::Ready;
 use crate::geometry::Ray;
 use crate::trace::eights::by_axis;
 use crate::trace::stack::Stack;
@@ -72,9 +73,45 @@ pub(in crate::trace) static ROWS: [[usize; 6]; 8] = {
 };
 
 /// Where a ray enters the boxes of children, and where it leaves them.
-struct Passage {
+pub(in crate::trace) struct Passage {
     enter: __m256,
     leave: __m256,
+}
+
+impl Passage {
+    /// Between the planes that come first and those that come last, by axis, in an interval.
+    ///
+    /// # Safety
+    ///
+    /// The processor has AVX2.
+    #[inline(always)]
+    pub(super) unsafe fn new(
+        near: [__m256; 3],
+        far: [__m256; 3],
+        [t_min, t_max]: [f32; 2],
+    ) -> Self {
+        // SAFETY: the same.
+        unsafe {
+            // In pairs: nothing waits for three in a row.
+            let [enter, leave] = [_mm256_max_ps(near[0], near[1]), _mm256_min_ps(far[0], far[1])];
+            let [start, end] = [_mm256_set1_ps(t_min), _mm256_set1_ps(t_max)];
+            Self {
+                enter: _mm256_max_ps(enter, _mm256_max_ps(near[2], start)),
+                leave: _mm256_min_ps(leave, _mm256_min_ps(far[2], end)),
+            }
+        }
+    }
+
+    /// The children that are met, as all ones.
+    ///
+    /// # Safety
+    ///
+    /// The processor has AVX2.
+    #[inline(always)]
+    pub(in crate::trace) unsafe fn met(&self) -> __m256 {
+        // SAFETY: the same.
+        unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.enter, self.leave) }
+    }
 }
 
 /// [`meet`](super::meet) with all boxes at once, but for the comparison. Products and differences are
@@ -84,7 +121,7 @@ struct Passage {
 ///
 /// The processor has AVX2 and FMA.
 #[inline(always)]
-unsafe fn pass(wide: &Wide, slabs: &Lanes, [t_min, t_max]: [f32; 2]) -> Passage {
+unsafe fn pass(wide: &Wide, slabs: &Lanes, interval: [f32; 2]) -> Passage {
     let bounds = std::ptr::from_ref(&wide.bounds).cast::<u8>();
     // SAFETY: an octant is less than eight. There are six rows of bounds; they are eight lanes each, aligned
     // like the node.
@@ -100,13 +137,7 @@ unsafe fn pass(wide: &Wide, slabs: &Lanes, [t_min, t_max]: [f32; 2]) -> Passage 
             let row = _mm256_load_ps(bounds.add(rows[3 + axis]).cast());
             _mm256_fmsub_ps(row, slabs.inverse[axis], slabs.leave[axis])
         });
-        // In pairs: nothing waits for three in a row.
-        let [enter, leave] = [_mm256_max_ps(near[0], near[1]), _mm256_min_ps(far[0], far[1])];
-        let [start, end] = [_mm256_set1_ps(t_min), _mm256_set1_ps(t_max)];
-        Passage {
-            enter: _mm256_max_ps(enter, _mm256_max_ps(near[2], start)),
-            leave: _mm256_min_ps(leave, _mm256_min_ps(far[2], end)),
-        }
+        Passage::new(near, far, interval)
     }
 }
 
@@ -125,8 +156,8 @@ pub(in crate::trace) unsafe fn nearest_avx2(
 ) -> Option<Child> {
     // SAFETY: the same; eight lanes fit.
     unsafe {
-        let Passage { enter, leave } = pass(wide, slabs, interval);
-        let met = _mm256_cmp_ps::<_CMP_LE_OQ>(enter, leave);
+        let passage = pass(wide, slabs, interval);
+        let (met, enter) = (passage.met(), passage.enter);
         let mask = _mm256_movemask_ps(met) as u32;
         let rest = mask & mask.wrapping_sub(1);
         if rest == 0 {
@@ -156,15 +187,14 @@ fn only(wide: &Wide, mask: u32) -> Option<Child> {
 #[inline(always)]
 pub(in crate::trace) unsafe fn push_avx2(
     wide: &Wide,
-    slabs: &Lanes,
+    ready: &Ready,
     interval: [f32; 2],
     stack: &mut Stack,
 ) {
     // SAFETY: the same.
     unsafe {
-        let Passage { enter, leave } = pass(wide, slabs, interval);
-        let met = _mm256_cmp_ps::<_CMP_LE_OQ>(enter, leave);
-        push_met(wide, slabs.octant, (met, enter), stack);
+        let passage = ready.pass(wide, interval);
+        push_met(wide, ready.octant(), (passage.met(), passage.enter), stack);
     }
 }
 
@@ -238,14 +268,14 @@ pub(in crate::trace) unsafe fn nearest_avx512(
 #[inline(always)]
 pub(in crate::trace) unsafe fn push_avx512(
     wide: &Wide,
-    slabs: &Lanes,
+    ready: &Ready,
     interval: [f32; 2],
     stack: &mut Stack,
 ) {
     // SAFETY: the same.
     unsafe {
-        let passage = pass(wide, slabs, interval);
-        push_passed(wide, slabs.octant, &passage, stack);
+        let passage = ready.pass(wide, interval);
+        push_passed(wide, ready.octant(), &passage, stack);
     }
 }
 

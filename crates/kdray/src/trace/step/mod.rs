@@ -4,17 +4,21 @@
 mod axes;
 #[cfg(target_arch = "x86_64")]
 mod lanes;
+#[cfg(target_arch = "x86_64")]
+mod ready;
 
 use super::prepare::{Slabs, greater, lesser};
 use super::stack::Stack;
 use super::wide::{Child, Wide};
 #[cfg(target_arch = "x86_64")]
-pub(super) use axes::{Axes, halves, is_valid, largest, magnitude, signs};
+pub(super) use axes::{halves, is_valid, largest, magnitude, signs};
 #[cfg(target_arch = "x86_64")]
 pub(super) use lanes::{
     Lanes, ROW, ROWS, far_to_near_avx2, nearest_avx2, nearest_avx512, places, push_avx2,
     push_avx512,
 };
+#[cfg(target_arch = "x86_64")]
+pub(super) use ready::Ready;
 
 /// The children that a ray meets, and where it enters them.
 #[derive(Clone, Copy)]
@@ -152,7 +156,7 @@ mod tests {
             push(&wide, slabs.octant(), &met, b);
             let lanes = simd.slabs(&ray, 1.0);
             let fast = simd.nearest(&wide, &lanes, interval, c);
-            simd.push(&wide, &lanes, interval, d);
+            simd.push(&wide, &simd.ready(&ray, 1.0), interval, d);
             let [a, b, c, d] = stacks;
             let (plain, fast) = (popped(plain, a), popped(fast, c));
             assert_eq!(plain, fast, "{wide:?} {slabs:?} {interval:?}");

@@ -8,7 +8,6 @@
 mod crossings;
 mod pairs;
 mod piles;
-mod ready;
 
 use std::arch::x86_64::*;
 
@@ -16,12 +15,12 @@ use self::crossings::{Crossing, Crossings, located_four};
 use self::pairs::Pairs;
 pub(super) use self::piles::Kept;
 use self::piles::Piles;
-use self::ready::{Ready, meet};
 use super::block_ray::BlockRay;
 use super::lane::unknown_hit;
 use super::located::Located;
 use super::sifted::{Sifted, lanes};
 use super::simd::HasAvx2;
+use super::step::Ready;
 use super::traverse::Trip;
 use super::vector::Precise;
 use super::wide::Child;
@@ -130,9 +129,12 @@ impl<T: Kept, A: Fn(usize, u32) -> bool> Wave<'_, T, A> {
                 let wide = layout.wides.get_unchecked(child.0 as usize);
                 (self.ready.get_unchecked(ray as usize), wide)
             };
-            let mask = meet(wide, ready);
-            // SAFETY: eight lanes, aligned like the node.
-            let children = unsafe { _mm256_load_si256(wide.children.as_ptr().cast()) };
+            // SAFETY: the processor has AVX2 and FMA; eight lanes, aligned like the node.
+            let (mask, children) = unsafe {
+                let passage = ready.pass(wide, ready.interval());
+                (passage.met(), _mm256_load_si256(wide.children.as_ptr().cast()))
+            };
+            let mask = _mm256_movemask_ps(mask) as u32;
             met.push_for(_mm256_set1_epi32(ray as i32), children, mask);
         }
         drop(met);
