@@ -2,11 +2,11 @@
 
 use std::cell::Cell;
 
+#[cfg(target_arch = "x86_64")]
+use super::coherence::go_together;
 use super::hits::{Crossings, FirstHits};
 #[cfg(target_arch = "x86_64")]
 use super::simd::HasAvx2;
-#[cfg(target_arch = "x86_64")]
-use super::stream::go_together;
 use super::stream::trace;
 use super::traverse::Trip;
 #[cfg(target_arch = "x86_64")]

@@ -33,7 +33,7 @@
 //! `collapse` lays the tree out in the nodes of eight boxes of `wide`; `prepare` makes of a ray
 //! what traversal needs, and `hull` knows rays that pass beside everything; `traverse` visits the leaves along it from front to back, `walk`ing `step`
 //! by `step`, and `stream` does so for several rays at a time, in turns, for which they are `waiting`, or as a
-//! `packet`. `lists` has
+//! `packet`: their `coherence` says which. `lists` has
 //! all hits of many rays, as a `wave` where each goes its own way. `block` holds the triangles of a
 //! leaf, eight at a time, and `filter` finds those that a ray hits; `simd` says with which
 //! instructions, those of NEON in `neon`; `vector` is arithmetic on eight or sixteen numbers, `sift`
@@ -52,6 +52,7 @@ mod block;
 #[cfg(target_arch = "x86_64")]
 mod block_ray;
 mod closest;
+mod coherence;
 mod collapse;
 mod eights;
 #[cfg(target_arch = "x86_64")]
