@@ -65,3 +65,44 @@ pub(super) fn count_hits<F: Fn(u32) -> bool>(
 fn as_wave(trip: &Trip, rays: &[Ray]) -> Option<HasAvx2> {
     if go_together(trip, rays) { None } else { trip.simd.avx2() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Mesh;
+    use crate::trace::noise::noise;
+    use crate::trace::simd::Best;
+    use crate::{BuildOptions, Tree};
+
+    /// Rays that can hit nothing are passed over: what another ray found in their place before is not theirs.
+    #[test]
+    fn lists_that_are_used_again_are_those_of_their_rays() {
+        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let mesh = Mesh::new(&corners, &[[0, 1, 2]]).expect("sound");
+        let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
+        let mut state = 3;
+        // From all around, so that they take turns, or one by one, or as packets.
+        let mut rays = |z: f32, miss: f32| -> Vec<Ray> {
+            let ray = |index: usize| {
+                let start = [(); 2].map(|()| noise(&mut state) - 0.5);
+                let x = if index % 3 == 1 { miss } else { 0.2 };
+                let origin = [x + start[0], 0.2 + start[1], 2.0];
+                Ray::new(origin, if index % 3 == 2 { [0.0; 3] } else { [-start[0], -start[1], z] })
+            };
+            (0..200).map(ray).collect()
+        };
+        let (hitting, missing) = (rays(-2.0, 0.2), rays(2.0, 9.0));
+        for simd in Best::each() {
+            let trip = Trip::new(&mesh, &tree, simd);
+            let mut room = Vec::new();
+            for rays in [&hitting, &missing, &hitting] {
+                let mut found = Vec::new();
+                let accept = |_: usize| |_: u32| true;
+                first_hits(&trip, rays, 3, accept, &mut room, |_, hits| found.push(hits.len()));
+                let is_hit = |index: usize| rays[index].direction[2] < 0.0;
+                let expected: Vec<_> = (0..200).map(|index| usize::from(is_hit(index))).collect();
+                assert_eq!(found, expected, "{}", simd.name());
+            }
+        }
+    }
+}
