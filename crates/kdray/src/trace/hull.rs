@@ -68,8 +68,8 @@ impl Hull {
         (0..3).any(is_apart)
     }
 
-    /// Which of at most 64 rays are valid and do not certainly miss the box, a bit each: of those in a batch
-    /// that come here together, it costs less to ask all than to be surprised by some.
+    /// Which of at most 64 rays are valid and do not certainly miss the box, a bit each. No jump depends on
+    /// one of them where they are asked eight at a time.
     #[cfg_attr(not(target_arch = "x86_64"), expect(unused_variables, reason = "one way only"))]
     pub(super) fn reached(&self, rays: &[Ray], simd: Best) -> u64 {
         #[cfg(target_arch = "x86_64")]

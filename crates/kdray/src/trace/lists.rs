@@ -69,38 +69,36 @@ fn as_wave(trip: &Trip, rays: &[Ray]) -> Option<HasAvx2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Mesh;
-    use crate::trace::noise::noise;
+    use crate::trace::coherence::{Sample, start_apart};
+    use crate::trace::noise::{rays_through, small_triangles};
     use crate::trace::simd::Best;
-    use crate::{BuildOptions, Tree};
+    use crate::trace::traverse::traverse;
 
-    /// Rays that can hit nothing are passed over: what another ray found in their place before is not theirs.
+    /// Rays in turns that can hit nothing are passed over: what another ray found in their place before is not
+    /// theirs.
     #[test]
     fn lists_that_are_used_again_are_those_of_their_rays() {
-        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-        let mesh = Mesh::new(&corners, &[[0, 1, 2]]).expect("sound");
-        let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
         let mut state = 3;
-        // From all around, so that they take turns, or one by one, or as packets.
-        let mut rays = |z: f32, miss: f32| -> Vec<Ray> {
-            let ray = |index: usize| {
-                let start = [(); 2].map(|()| noise(&mut state) - 0.5);
-                let x = if index % 3 == 1 { miss } else { 0.2 };
-                let origin = [x + start[0], 0.2 + start[1], 2.0];
-                Ray::new(origin, if index % 3 == 2 { [0.0; 3] } else { [-start[0], -start[1], z] })
-            };
-            (0..200).map(ray).collect()
-        };
-        let (hitting, missing) = (rays(-2.0, 0.2), rays(2.0, 9.0));
+        let (mesh, tree) = small_triangles(&mut state);
+        let hitting = rays_through(&mut state, 300);
+        let mut some = rays_through(&mut state, 300);
+        some.iter_mut().skip(1).step_by(3).for_each(|ray| ray.origin[0] += 1e3);
+        some.iter_mut().skip(2).step_by(3).for_each(|ray| ray.direction = [0.0; 3]);
         for simd in Best::each() {
             let trip = Trip::new(&mesh, &tree, simd);
             let mut room = Vec::new();
-            for rays in [&hitting, &missing, &hitting] {
+            for rays in [&hitting, &some, &hitting] {
+                assert!(start_apart(&trip, rays) && Sample::new(&trip, rays).is_worth_turns(true));
+                let one_by_one = |ray: &Ray| {
+                    let mut first = FirstHits::new(ray, 3, |_| true, Vec::new());
+                    traverse(&trip, ray, &mut first);
+                    first.hits
+                };
+                let expected: Vec<_> = rays.iter().map(one_by_one).collect();
+                assert!(expected.iter().filter(|hits| !hits.is_empty()).count() > 50);
                 let mut found = Vec::new();
                 let accept = |_: usize| |_: u32| true;
-                first_hits(&trip, rays, 3, accept, &mut room, |_, hits| found.push(hits.len()));
-                let is_hit = |index: usize| rays[index].direction[2] < 0.0;
-                let expected: Vec<_> = (0..200).map(|index| usize::from(is_hit(index))).collect();
+                first_hits(&trip, rays, 3, accept, &mut room, |_, hits| found.push(hits.to_vec()));
                 assert_eq!(found, expected, "{}", simd.name());
             }
         }

@@ -229,28 +229,9 @@ fn stream_with<V: Visitor>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Mesh;
     use crate::trace::hits::Closest;
-    use crate::trace::noise::noise;
+    use crate::trace::noise::{noise, rays_through, small_triangles};
     use crate::trace::simd::Best;
-    use crate::{BuildOptions, Tree};
-
-    /// Small triangles, so that rays go a long way between them.
-    fn small_triangles(state: &mut u32) -> (Mesh, Tree) {
-        let mut point = |from: f32, to: f32| [(); 3].map(|()| from + (to - from) * noise(state));
-        let corners = |_| {
-            let (middle, size) = (point(0.0, 1.0), 0.1);
-            [(); 3].map(|()| {
-                let way = point(-size, size);
-                [0, 1, 2].map(|axis| middle[axis] + way[axis])
-            })
-        };
-        let positions: Vec<_> = (0..900).flat_map(corners).collect();
-        let triangles: Vec<_> = (0..900).map(|at| [3 * at, 3 * at + 1, 3 * at + 2]).collect();
-        let mesh = Mesh::new(&positions, &triangles).expect("sound");
-        let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
-        (mesh, tree)
-    }
 
     /// Asks for the closest hits of rays, all at once and one by one.
     fn finds_what_single_rays_find(trip: &Trip, rays: &[Ray]) {
@@ -271,15 +252,7 @@ mod tests {
     fn rays_that_take_turns_find_what_single_rays_find() {
         let mut state = 11;
         let (mesh, tree) = small_triangles(&mut state);
-        let mut point =
-            |from: f32, to: f32| [(); 3].map(|()| from + (to - from) * noise(&mut state));
-        // From all around, through the scene.
-        let rays: Vec<_> = (0..1000)
-            .map(|_| {
-                let (origin, target) = (point(-0.5, 1.5), point(0.2, 0.8));
-                Ray::new(origin, [0, 1, 2].map(|axis| target[axis] - origin[axis]))
-            })
-            .collect();
+        let rays = rays_through(&mut state, 1000);
         for simd in Best::each() {
             let trip = Trip::new(&mesh, &tree, simd);
             assert!(Sample::new(&trip, &rays).is_worth_turns(true) && !go_together(&trip, &rays));

@@ -73,6 +73,7 @@ pub(super) struct Walk<'a, S: Simd> {
     ready: S::Ready,
     shear: Option<S::Shear>,
     stack: &'a mut Stack,
+    /// That of the ray, on a line that a step reads anyway.
     t_min: f32,
     until: f32,
 }
