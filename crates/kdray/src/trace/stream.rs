@@ -14,7 +14,7 @@ use super::simd::Best;
 use super::simd::{Avx2, Avx512};
 use super::simd::{Plain, Simd};
 use super::stack::Stack;
-use super::traverse::{Trip, Visitor, traverse};
+use super::traverse::{Trip, Visitor, traverse, traverse_with};
 use super::waiting::Waiting;
 use super::walk::Walk;
 use super::wide::Child;
@@ -141,7 +141,58 @@ fn eight<V: Visitor>(trip: &Trip, rays: &[Ray], visitors: &mut [Option<V>]) -> F
     Fullness::default()
 }
 
+/// Each ray to its end before the next one starts.
 fn one_by_one<V: Visitor>(
+    trip: &Trip,
+    rays: &[Ray],
+    begin: impl FnMut(usize, &Ray) -> Option<V>,
+    end: impl FnMut(usize, &mut V),
+) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(proof) = trip.simd.avx512() {
+        // SAFETY: the processor has AVX-512.
+        return unsafe { one_by_one_avx512(proof.into(), trip, rays, begin, end) };
+    }
+    #[cfg(target_arch = "x86_64")]
+    if let Some(proof) = trip.simd.avx2() {
+        // SAFETY: the processor has AVX2.
+        return unsafe { one_by_one_avx2(proof.into(), trip, rays, begin, end) };
+    }
+    #[cfg(target_arch = "aarch64")]
+    if let Best::Neon(neon) = trip.simd {
+        return one_by_one_with(neon, trip, rays, begin, end);
+    }
+    one_by_one_with(Plain, trip, rays, begin, end);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
+fn one_by_one_avx2<V: Visitor>(
+    simd: Avx2,
+    trip: &Trip,
+    rays: &[Ray],
+    begin: impl FnMut(usize, &Ray) -> Option<V>,
+    end: impl FnMut(usize, &mut V),
+) {
+    one_by_one_with(simd, trip, rays, begin, end);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,lzcnt,popcnt")]
+fn one_by_one_avx512<V: Visitor>(
+    simd: Avx512,
+    trip: &Trip,
+    rays: &[Ray],
+    begin: impl FnMut(usize, &Ray) -> Option<V>,
+    end: impl FnMut(usize, &mut V),
+) {
+    one_by_one_with(simd, trip, rays, begin, end);
+}
+
+/// The traversal is part of the loop: it takes a fifteenth fewer instructions so where rays go a short way.
+#[inline(always)]
+fn one_by_one_with<V: Visitor>(
+    simd: impl Simd,
     trip: &Trip,
     rays: &[Ray],
     mut begin: impl FnMut(usize, &Ray) -> Option<V>,
@@ -149,7 +200,7 @@ fn one_by_one<V: Visitor>(
 ) {
     for (index, ray) in rays.iter().enumerate() {
         if let Some(mut visitor) = begin(index, ray) {
-            traverse(trip, ray, &mut visitor);
+            traverse_with(simd, trip, ray, &mut visitor);
             end(index, &mut visitor);
         }
     }

@@ -97,8 +97,9 @@ fn traverse_avx512<V: Visitor>(simd: Avx512, trip: &Trip, ray: &Ray, visitor: &m
     traverse_with(simd, trip, ray, visitor);
 }
 
+/// [`traverse`] as part of a function that has the instructions.
 #[inline(always)]
-fn traverse_with(simd: impl Simd, trip: &Trip, ray: &Ray, visitor: &mut impl Visitor) {
+pub(super) fn traverse_with(simd: impl Simd, trip: &Trip, ray: &Ray, visitor: &mut impl Visitor) {
     if !simd.is_beside(ray, &trip.hull) && simd.is_valid(ray) {
         let root = (Child(0), ray.t_max);
         visit_below(simd, &trip.layout, (ray, trip.hull.reach), root, visitor);
