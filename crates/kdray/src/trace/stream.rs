@@ -280,9 +280,11 @@ fn stream_with<V: Visitor>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Mesh;
     use crate::trace::hits::Closest;
     use crate::trace::noise::{noise, rays_through, small_triangles};
     use crate::trace::simd::Best;
+    use crate::{BuildOptions, Tree};
 
     /// Asks for the closest hits of rays, all at once and one by one.
     fn finds_what_single_rays_find(trip: &Trip, rays: &[Ray]) {
@@ -307,6 +309,19 @@ mod tests {
         for simd in Best::each() {
             let trip = Trip::new(&mesh, &tree, simd);
             assert!(Sample::new(&trip, &rays).is_worth_turns(true) && !go_together(&trip, &rays));
+            finds_what_single_rays_find(&trip, &rays);
+        }
+    }
+
+    #[test]
+    fn rays_that_go_short_ways_find_what_single_rays_find() {
+        let corners = [[0.0, 0.0, 0.4], [1.0, 0.1, 0.5], [0.2, 1.0, 0.6], [0.9, 0.9, 0.3]];
+        let mesh = Mesh::new(&corners, &[[0, 1, 2], [1, 3, 2]]).expect("sound");
+        let tree = Tree::build(&mesh, &BuildOptions::default()).expect("sound options");
+        let rays = rays_through(&mut 13, 1000);
+        for simd in Best::each() {
+            let trip = Trip::new(&mesh, &tree, simd);
+            assert!(!Sample::new(&trip, &rays).is_worth_turns(true) && !go_together(&trip, &rays));
             finds_what_single_rays_find(&trip, &rays);
         }
     }
