@@ -122,8 +122,10 @@ impl<V: Vector> Between<V> {
 /// themselves the `t` of corners are off by `3 u R`, with `R` the largest of them. The differences, the products,
 /// the sums, the quotient, which may have few digits, and their roundings, that of a hit's `t` among them, add
 /// less than `22 u R`, as no range is larger than `2 R`; that the range is off adds `u R`. At least `32 u R` is
-/// said. `S` and the result are so large that no error comes from numbers too small for their precision; where
-/// numbers are too large, the result is infinite or no number, and says nothing either.
+/// said. `S` and the result are so large that no error comes from numbers too small for their precision.
+///
+/// The sum of weighted differences is less than `S` times the range: where it is too large for a number, so is
+/// that product, and with it the error, and nothing is said. So that product is made first.
 #[inline(always)]
 fn times<V: Vector>(corners: &[[V; 3]; 3], crossed: &Crossed<V>, t_per_z: V) -> (V, V) {
     const SHARE: f32 = 32.0 * 0.5 * f32::EPSILON;
@@ -133,16 +135,15 @@ fn times<V: Vector>(corners: &[[V; 3]; 3], crossed: &Crossed<V>, t_per_z: V) -> 
     let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = *corners;
     let [a, b, c] = [az * t_per_z, bz * t_per_z, cz * t_per_z];
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    let squares = ax.fused(ax, bx.fused(bx, cx.fused(cx, all(TINY))))
+    let size = ax.fused(ax, bx.fused(bx, cx.fused(cx, all(TINY))))
         + ay.fused(ay, by.fused(by, cy * cy))
         + az.fused(az, bz.fused(bz, cz * cz));
-    let error = squares * all(SHARE);
     let [u, v, w] = crossed.edges.map(V::magnitude);
-    let known = error.is_less(u.min(v).min(w));
+    let known = (size * all(SHARE)).is_less(u.min(v).min(w));
     let one_over = all(1.0) / (u + v + w);
     let t = (b - a).fused(v, (c - a) * w).fused(one_over, a);
     let reach = low.magnitude().max(high.magnitude());
-    let off = (error * (high - low)).fused(one_over, reach.fused(all(SHARE), all(SHORT)));
+    let off = (size * (high - low)).fused(one_over, reach).fused(all(SHARE), all(SHORT));
     let early = V::pick(known, t - off, all(f32::NEG_INFINITY));
     let late = V::pick(known, t + off, all(f32::INFINITY));
     (early, late)
@@ -162,7 +163,7 @@ mod tests {
     /// small, and as far from each other.
     fn triangle_and_ray(power: f32, state: &mut u32) -> ([[f32; 3]; 3], Ray) {
         let mut any_size = || 10.0_f32.powf(power * (2.0 * noise(state) - 1.0));
-        let (size, distance, length) = (any_size(), any_size(), any_size());
+        let (size, distance, length) = (any_size(), any_size(), any_size() * any_size());
         let mut point = |size: f32| [(); 3].map(|()| size * (noise(state) - 0.5));
         let [a, b, mut c] = [point(size), point(size), point(size)];
         let (origin, beside) = (point(distance), point(size));
@@ -222,7 +223,6 @@ mod tests {
                 let is_outside = hit.t < early || late < hit.t;
                 assert!(!is_outside, "{triangle:?} {ray:?} {early} {} {late}", hit.t);
             }
-
             assert!(hits > 50_000 && 2 * narrow > hits, "{narrow} of {hits} up to 1e{power}");
         }
     }
