@@ -4,9 +4,9 @@ use std::arch::x86_64::*;
 
 use super::block::Block;
 use super::block_ray::BlockRay;
-use super::sift::{Crossed, crossed, crossed_between, sheared, sift};
-use super::sifted::{Filtered, Sifted, Wants};
-use super::vector::{Arithmetic, Eight, Mask, by_axis};
+use super::sift::{Crossed, crossed, filtered, sheared, sift};
+use super::sifted::{Sifted, Wants};
+use super::vector::{Eight, Mask, by_axis};
 use super::wave::Kept;
 
 /// A number in every lane.
@@ -39,13 +39,7 @@ impl Block {
         }
     }
 
-    /// The triangles that may be hit in the interval, if there are any.
-    ///
-    /// A line that crosses a triangle often does so behind the ray, most of all where the ray starts on a
-    /// surface. Where it might, or if several may be hit and the first is wanted, or to know whether there is
-    /// one is enough, bounds of `t` are asked: they are there sooner than a hit.
-    ///
-    /// Part of the loop that asks, as in `step/lanes.rs`.
+    /// [`filtered`], as a part of the loop that asks, as in `step/lanes.rs`.
     ///
     /// # Safety
     ///
@@ -56,25 +50,12 @@ impl Block {
         ray: &BlockRay,
         [t_min, t_max]: [f32; 2],
         wants: Wants,
-    ) -> Option<Filtered> {
+    ) -> Option<Sifted> {
         // SAFETY: the same.
-        let (corners, first, last, t_per_z) =
-            unsafe { (self.sheared_avx2(ray), all(t_min), all(t_max), all(ray.precise[2] as f32)) };
-        let crossed = crossed(&corners);
-        let maybe = crossed.maybe.bits();
-        if maybe == 0 {
-            return None;
-        }
-        if wants != Wants::Whether {
-            let [a, b, c] = by_axis!(|corner| corners[corner][2] * t_per_z);
-            let behind = a.min(b).min(c).is_less(first).bits() & maybe;
-            let others = if wants == Wants::First { maybe & (maybe - 1) } else { 0 };
-            if behind | others == 0 {
-                let sifted = Sifted { maybe, surely: crossed.surely.bits(), inside: 0 };
-                return Some(Filtered::all(sifted));
-            }
-        }
-        crossed_between(&corners, &crossed, t_per_z, [first, last]).filtered(wants)
+        let (corners, interval, t_per_z) = unsafe {
+            (self.sheared_avx2(ray), [all(t_min), all(t_max)], all(ray.precise[2] as f32))
+        };
+        filtered(&corners, t_per_z, interval, wants)
     }
 
     /// Of the lanes whose edge functions do not differ in sign: all, those whose are not zero, and, if

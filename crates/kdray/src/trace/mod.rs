@@ -37,7 +37,8 @@
 //! all hits of many rays, as a `wave` where each goes its own way. `block` holds the triangles of a
 //! leaf, eight at a time, and `filter` finds those that a ray hits; `simd` says with which
 //! instructions, those of NEON in `neon`; `vector` is arithmetic on eight or sixteen numbers, `sift`
-//! says by it which triangles may be hit, which is `sifted`, and `located` where.
+//! says by it which triangles may be hit, which is `sifted`, and `located` where: one, a `lane` of a
+//! block, or `several`.
 //! `intersect` says for one triangle what a hit is:
 //! it is the definition that everything else is tested against. `hits` keeps what the queries want
 //! of the hits. `leaves` is the same visit for whoever asks, in strict order. `near` visits the
@@ -79,6 +80,8 @@ mod packet;
 mod pending;
 mod prepare;
 mod proximity;
+#[cfg(target_arch = "x86_64")]
+mod several;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod sift;
 mod sifted;

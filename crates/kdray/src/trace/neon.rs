@@ -2,8 +2,8 @@
 
 use super::block::Block;
 use super::prepare::{Shear, Slabs};
-use super::sift::{crossed, crossed_between, sheared};
-use super::sifted::{Filtered, Wants};
+use super::sift::{filtered, sheared};
+use super::sifted::{Sifted, Wants};
 use super::simd::{Neon, Simd};
 use super::stack::Stack;
 use super::step::{Met, nearer_of_two};
@@ -137,17 +137,12 @@ impl Simd for Neon {
         ray: &ShearLanes,
         [t_min, t_max]: [f32; 2],
         wants: Wants,
-    ) -> Option<Filtered> {
+    ) -> Option<Sifted> {
         let corners = block.corners().each_ref().map(|rows| {
             let corner = ray.shear.axes.map(|axis| self.load(&rows[axis]));
             sheared(corner, &ray.origin, &ray.slope)
         });
-        let interval = [self.all(t_min), self.all(t_max)];
-        let crossed = crossed(&corners);
-        if crossed.maybe.bits() == 0 {
-            return None;
-        }
-        crossed_between(&corners, &crossed, ray.t_per_z, interval).filtered(wants)
+        filtered(&corners, ray.t_per_z, [self.all(t_min), self.all(t_max)], wants)
     }
 
     #[inline(always)]

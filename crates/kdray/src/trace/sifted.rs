@@ -18,25 +18,6 @@ impl Sifted {
     }
 }
 
-/// The triangles of a block that may be hit in the interval that was asked for.
-#[derive(Clone, Copy)]
-pub(super) struct Filtered {
-    /// Those of which one may be the first.
-    pub(super) sifted: Sifted,
-    /// Others that may be hit, but later than at `late`.
-    pub(super) later: u32,
-    /// One of the first is crossed before, for certain, if this is not infinite.
-    pub(super) late: f32,
-}
-
-impl Filtered {
-    /// Where it is not known which are first.
-    #[inline(always)]
-    pub(super) fn all(sifted: Sifted) -> Self {
-        Self { sifted, later: 0, late: f32::INFINITY }
-    }
-}
-
 /// What a visitor wants of the triangles of a block.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Wants {

@@ -2,7 +2,7 @@
 
 use super::block::Block;
 use super::prepare::lesser;
-use super::sifted::{Filtered, Wants, lanes};
+use super::sifted::{Sifted, Wants, lanes};
 use super::simd::Simd;
 use super::stack::Stack;
 use super::traverse::{ENOUGH, Visitor};
@@ -179,9 +179,6 @@ pub(super) fn test_blocks<S: Simd, V: Visitor>(
 }
 
 /// Shows the visitor the hits of a block.
-///
-/// Of those that may be the first there is one, most of the time. Others are tested elsewhere: in a loop the
-/// compiler would make ready whatever is the same for each.
 #[inline(always)]
 fn test_block<S: Simd, V: Visitor>(
     simd: S,
@@ -191,9 +188,8 @@ fn test_block<S: Simd, V: Visitor>(
     visitor: &mut V,
 ) -> f32 {
     visitor.test();
-    let Some(Filtered { sifted, later, late }) =
-        simd.filter(block, shear, [ray.t_min, until], V::WANTS)
-    else {
+    let interval = [ray.t_min, until];
+    let Some(sifted) = simd.filter(block, shear, interval, V::WANTS) else {
         return until;
     };
     if V::WANTS == Wants::Whether {
@@ -204,25 +200,15 @@ fn test_block<S: Simd, V: Visitor>(
             }
         }
     }
-    if V::WANTS != Wants::First {
-        return test_lanes(
-            simd,
-            block,
-            [sifted.maybe, sifted.surely],
-            (ray, shear),
-            until,
-            visitor,
-        );
+    let Sifted { maybe, surely, .. } = sifted;
+    if V::WANTS == Wants::Whether {
+        return simd.test_lanes(block, [maybe, surely], (ray, shear), until, visitor);
     }
-    let first = sifted.maybe.trailing_zeros() as usize;
-    until = test_lane(simd, block, (first, sifted.surely(first)), (ray, shear), until, visitor);
-    let rest = sifted.maybe & (sifted.maybe - 1);
-    // A hit need not have been wanted.
-    let rest = if until > late { rest | later } else { rest };
-    if rest == 0 || until == ENOUGH {
-        return until;
+    if maybe & (maybe - 1) != 0 {
+        return simd.several(block, [maybe, surely], (ray, shear), until, visitor);
     }
-    simd.test_lanes(block, [rest, sifted.surely], (ray, shear), until, visitor)
+    let lane = maybe.trailing_zeros() as usize;
+    test_lane(simd, block, (lane, sifted.surely(lane)), (ray, shear), until, visitor)
 }
 
 /// Shows the visitor the hits of the first of these masks of lanes; the line crosses those of the second for
@@ -262,5 +248,105 @@ fn test_lane<S: Simd, V: Visitor>(
     match simd.hit(block, lane, surely, ray) {
         Some(hit) => lesser(until, visitor.hit(hit)),
         None => until,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Hit;
+    use crate::trace::hits::Closest;
+    use crate::trace::intersect::intersect;
+    use crate::trace::noise::noise;
+    #[cfg(target_arch = "x86_64")]
+    use crate::trace::simd::{Avx2, Avx512};
+    use crate::trace::simd::{Best, Plain};
+
+    /// Keeps every hit, and knows which it has.
+    struct Everything(Vec<Hit>);
+
+    impl Visitor for Everything {
+        fn hit(&mut self, hit: Hit) -> f32 {
+            self.0.push(hit);
+            f32::INFINITY
+        }
+
+        fn knows(&self, triangle: u32) -> bool {
+            self.0.iter().any(|hit| hit.triangle == triangle)
+        }
+    }
+
+    /// Up to eight triangles of which a ray crosses several: some of them the same, some behind it, and some
+    /// through an edge or a vertex but for a rounding.
+    fn triangles_and_ray(state: &mut u32) -> (Vec<[[f32; 3]; 3]>, Ray) {
+        let count = 1 + (8.0 * noise(state)) as usize;
+        let slope = if noise(state) < 0.5 { [0.0; 2] } else { [noise(state), noise(state)] };
+        // So far from the ray at `z`.
+        let beside = |[x, y, z]: [f32; 3]| [x + slope[0] * z, y + slope[1] * z, z];
+        let mut triangles: Vec<[[f32; 3]; 3]> = Vec::new();
+        for _ in 0..count {
+            let kind = (6.0 * noise(state)) as usize;
+            let mut corner = || [2.0 * noise(state) - 1.0, 2.0 * noise(state) - 1.0, noise(state)];
+            let [a, b, c] = [corner(), corner(), corner()];
+            triangles.push(match (kind, triangles.last()) {
+                (0, Some(last)) => *last,
+                (1, _) => [beside([0.0, 0.0, a[2]]), b, c],
+                (2, _) => [beside([-b[0], -b[1], b[2]]), beside(b), c],
+                _ => [[-1.0, -1.0, a[2]], [3.0, -1.0, 0.4], [-1.0, 3.0, c[2]]].map(beside),
+            });
+        }
+        let t_min = if noise(state) < 0.5 { 0.0 } else { noise(state) };
+        let t_max = 2.0 * noise(state) + 0.5;
+        let ray = Ray::new([0.0; 3], [slope[0], slope[1], 1.0]);
+        (triangles, Ray { t_min, t_max, ..ray })
+    }
+
+    /// What is shown of blocks of triangles that a ray crosses is what [`intersect`] gives. Gives how many hits.
+    fn shows_the_hits_of_blocks(simd: impl Simd) -> usize {
+        let (mut state, mut shown) = (3, 0);
+        for round in 0..40_000 {
+            let (triangles, ray) = triangles_and_ray(&mut state);
+            let indices: Vec<u32> = (0..triangles.len() as u32).collect();
+            let blocks = [Block::new(&indices, true, |index| triangles[index as usize])];
+            let shear = simd.shear(&ray);
+            let hit = |index: &u32| intersect(&ray, *index, &triangles[*index as usize]);
+            let mut hits: Vec<Hit> = indices.iter().filter_map(hit).collect();
+            let mut all = Everything(Vec::new());
+            test_blocks(simd, &blocks, (&ray, &shear), ray.t_max, &mut all);
+            let mut all: Vec<Hit> =
+                all.0.into_iter().filter(|hit| ray.t_min <= hit.t && hit.t <= ray.t_max).collect();
+            all.sort_unstable_by_key(|hit| hit.triangle);
+            assert_eq!(all, hits, "{triangles:?} {ray:?}");
+            // One that is left out now and then, which may be the first.
+            let accept = |triangle: u32| round % 3 != 0 || triangle != round as u32 % 8;
+            let mut closest = Closest::new(&ray, accept);
+            test_blocks(simd, &blocks, (&ray, &shear), ray.t_max, &mut closest);
+            hits.retain(|hit| accept(hit.triangle));
+            let first = hits.iter().copied().min_by(|a, b| a.t.total_cmp(&b.t));
+            assert_eq!(closest.hit, first, "{triangles:?} {ray:?}");
+            shown += hits.len();
+        }
+        shown
+    }
+
+    #[test]
+    fn hits_of_blocks_are_shown_on_every_processor() {
+        let shown = shows_the_hits_of_blocks(Plain);
+        assert!(shown > 40_000, "only {shown} hits");
+        match Best::detect() {
+            #[cfg(target_arch = "x86_64")]
+            Best::Avx2(proof) => {
+                println!("this processor has no AVX-512: its way was not tested");
+                assert_eq!(shows_the_hits_of_blocks(Avx2::from(proof)), shown);
+            }
+            #[cfg(target_arch = "x86_64")]
+            Best::Avx512(proof) => {
+                assert_eq!(shows_the_hits_of_blocks(Avx2::from(proof.avx2())), shown);
+                assert_eq!(shows_the_hits_of_blocks(Avx512::from(proof)), shown);
+            }
+            #[cfg(target_arch = "aarch64")]
+            Best::Neon(neon) => assert_eq!(shows_the_hits_of_blocks(neon), shown),
+            Best::Plain => println!("this processor has no fast path: none was tested"),
+        }
     }
 }

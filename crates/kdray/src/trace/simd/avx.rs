@@ -1,11 +1,14 @@
 //! Eight boxes and triangles at once, with AVX2 or AVX-512.
 
+use std::hint::black_box;
+
 use super::{HasAvx2, HasAvx512, Simd};
 use crate::geometry::{Hit, Ray};
 use crate::trace::block::Block;
 use crate::trace::block_ray::BlockRay;
 use crate::trace::hull::Hull;
-use crate::trace::sifted::{Filtered, Wants};
+use crate::trace::several::{all_of, first_of};
+use crate::trace::sifted::{Sifted, Wants};
 use crate::trace::stack::Stack;
 use crate::trace::step::{self, Lanes, Ready};
 use crate::trace::traverse::Visitor;
@@ -96,7 +99,7 @@ macro_rules! simd {
                 shear: &BlockRay,
                 interval: [f32; 2],
                 wants: Wants,
-            ) -> Option<Filtered> {
+            ) -> Option<Sifted> {
                 // SAFETY: as above.
                 unsafe { block.filter_avx2(shear, interval, wants) }
             }
@@ -109,8 +112,40 @@ macro_rules! simd {
                 surely: bool,
                 ray: (&Ray, &BlockRay),
             ) -> Option<Hit> {
+                block.hit_by(lane, surely, ray)
+            }
+
+            #[inline(always)]
+            fn several<V: Visitor>(
+                self,
+                block: &Block,
+                lanes: [u32; 2],
+                ray: (&Ray, &BlockRay),
+                until: f32,
+                visitor: &mut V,
+            ) -> f32 {
+                #[inline(never)]
+                #[target_feature(enable = $features)]
+                fn apart<V: Visitor>(
+                    simd: $simd,
+                    block: &Block,
+                    lanes: [u32; 2],
+                    ray: (&Ray, &BlockRay),
+                    until: f32,
+                    visitor: &mut V,
+                ) -> f32 {
+                    // SAFETY: as above.
+                    unsafe { all_of(simd, block, lanes, ray, until, visitor) }
+                }
                 // SAFETY: as above.
-                unsafe { block.hit_avx2(lane, surely, ray) }
+                unsafe {
+                    if V::WANTS == Wants::First {
+                        // Rows that were kept from the filter would be written to memory and read again.
+                        first_of(self, black_box(block), lanes, ray, until, visitor)
+                    } else {
+                        apart(self, block, lanes, ray, until, visitor)
+                    }
+                }
             }
 
             #[inline(always)]

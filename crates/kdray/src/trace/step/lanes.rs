@@ -7,7 +7,6 @@
 use std::arch::x86_64::*;
 
 use super::axes::Axes;
-use super::nearer_of_two;
 use super::ready::Ready;
 use crate::geometry::Ray;
 use crate::trace::eights::by_axis;
@@ -141,8 +140,10 @@ unsafe fn pass(wide: &Wide, slabs: &Lanes, interval: [f32; 2]) -> Passage {
     }
 }
 
-/// [`nearest`](super::nearest), with jumps for one child and for two: a single ray waits for nothing but
-/// the result.
+/// [`nearest`](super::nearest), with a jump for one child: a single ray waits for nothing but the result.
+///
+/// The nearest of several is known from the order and which are met, long before the others are on the
+/// stack.
 ///
 /// # Safety
 ///
@@ -154,23 +155,20 @@ pub(in crate::trace) unsafe fn nearest_avx2(
     interval: [f32; 2],
     stack: &mut Stack,
 ) -> Option<Child> {
-    // SAFETY: the same; eight lanes fit.
+    // SAFETY: the same.
     unsafe {
         let passage = pass(wide, slabs, interval);
-        let (met, enter) = (passage.met(), passage.enter);
+        let met = passage.met();
         let mask = _mm256_movemask_ps(met) as u32;
-        let rest = mask & mask.wrapping_sub(1);
-        if rest == 0 {
+        if mask & mask.wrapping_sub(1) == 0 {
             return only(wide, mask);
         }
-        if rest & (rest - 1) == 0 {
-            let mut t_enter = [0.0; 8];
-            _mm256_storeu_ps(t_enter.as_mut_ptr(), enter);
-            return Some(nearer_of_two(wide, mask, &t_enter, stack));
-        }
-        push_met(wide, slabs.octant, (met, enter), stack);
+        let order = *wide.order.get_unchecked(slabs.octant);
+        let (places, mask) = ordered(order, met);
+        push_places(wide, (places, mask), passage.enter, mask.count_ones() as usize - 1, stack);
+        let last = 31 - mask.leading_zeros();
+        Some(wide.children[(order >> (4 * last)) as usize & 7])
     }
-    Some(stack.take())
 }
 
 /// The child that is met, or none: most of the time.
@@ -205,12 +203,49 @@ pub(in crate::trace) unsafe fn push_avx2(
 /// The processor has AVX2.
 #[inline(always)]
 unsafe fn push_met(wide: &Wide, octant: usize, (met, enter): (__m256, __m256), stack: &mut Stack) {
+    // SAFETY: the same; an octant is less than eight.
+    unsafe {
+        let met = ordered(*wide.order.get_unchecked(octant), met);
+        push_places(wide, met, enter, met.1.count_ones() as usize, stack);
+    }
+}
+
+/// Puts children on the stack, as many as `count` of those that [`ordered`] gives, and where the ray enters
+/// them.
+///
+/// # Safety
+///
+/// The processor has AVX2.
+#[inline(always)]
+unsafe fn push_places(
+    wide: &Wide,
+    (places, met): (__m256i, u32),
+    enter: __m256,
+    count: usize,
+    stack: &mut Stack,
+) {
     // SAFETY: the same; children are eight lanes, aligned like the node.
     unsafe {
-        let (places, count) = far_to_near_avx2(wide, octant, met);
+        let places = _mm256_permutevar8x32_epi32(places, self::places(met));
         let children = _mm256_load_si256(wide.children.as_ptr().cast());
         let children = _mm256_permutevar8x32_epi32(children, places);
         stack.push_avx2(children, _mm256_permutevar8x32_ps(enter, places), count);
+    }
+}
+
+/// The places of children in an order, and which of these were met, a bit each. Of each lane the lowest three
+/// bits count.
+///
+/// # Safety
+///
+/// The processor has AVX2.
+#[inline(always)]
+unsafe fn ordered(order: u32, met: __m256) -> (__m256i, u32) {
+    // SAFETY: the same.
+    unsafe {
+        let places = nibbles(order);
+        let met = _mm256_permutevar8x32_epi32(_mm256_castps_si256(met), places);
+        (places, _mm256_movemask_ps(_mm256_castsi256_ps(met)) as u32)
     }
 }
 
@@ -228,15 +263,13 @@ pub(in crate::trace) unsafe fn far_to_near_avx2(
 ) -> (__m256i, usize) {
     // SAFETY: the same; an octant is less than eight.
     unsafe {
-        let places = nibbles(*wide.order.get_unchecked(octant));
-        let met = _mm256_permutevar8x32_epi32(_mm256_castps_si256(met), places);
-        let met = _mm256_movemask_ps(_mm256_castsi256_ps(met)) as u32;
+        let (places, met) = ordered(*wide.order.get_unchecked(octant), met);
         let places = _mm256_permutevar8x32_epi32(places, self::places(met));
         (places, met.count_ones() as usize)
     }
 }
 
-/// [`nearest_avx2`] with a jump less: two children take no way of their own.
+/// [`nearest_avx2`] in fewer instructions.
 ///
 /// # Safety
 ///

@@ -10,6 +10,8 @@ mod four;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 #[cfg(target_arch = "x86_64")]
+mod one;
+#[cfg(target_arch = "x86_64")]
 mod sixteen;
 #[cfg(test)]
 mod tests;
@@ -56,6 +58,7 @@ pub(in crate::trace) trait Vector: Arithmetic<Number = f32> {
     #[cfg(target_arch = "x86_64")]
     fn with_signs_of(self, signs: Self) -> Self;
     /// The least number; any, if one is NaN.
+    #[cfg(target_arch = "x86_64")]
     fn least(self) -> f32;
     /// The greatest number; none is NaN.
     #[cfg(target_arch = "x86_64")]

@@ -116,12 +116,6 @@ impl Vector for Eight {
     }
 
     #[inline(always)]
-    fn least(self) -> f32 {
-        // SAFETY: as above.
-        unsafe { vminvq_f32(vminq_f32(self.0[0], self.0[1])) }
-    }
-
-    #[inline(always)]
     fn fused(self, factor: Self, term: Self) -> Self {
         // SAFETY: as above.
         Self(unsafe {
