@@ -8,7 +8,7 @@ use super::located::{Located, located, precisely_sheared};
 use super::prepare::lesser;
 use super::sifted::lanes;
 use super::simd::Simd;
-use super::traverse::{ENOUGH, Visitor};
+use super::traverse::Visitor;
 use super::vector::{Four, Precise, by_axis};
 use super::walk::test_lanes;
 use crate::geometry::{Hit, Ray};
@@ -31,13 +31,11 @@ pub(super) unsafe fn first_of<S: Simd<Shear = BlockRay>, V: Visitor>(
     until: f32,
     visitor: &mut V,
 ) -> f32 {
-    let sure = maybe & surely;
-    let four = &FIRST_FOUR[sure as usize & 255];
     // SAFETY: the same.
-    let Located { known, t, u, v } = unsafe { located_four(block, block_ray, four) };
-    if sure == 0 || known != 0b1111 {
+    let Some((four, [t, u, v])) = (unsafe { located_four(block, block_ray, maybe & surely) })
+    else {
         return simd.test_lanes(block, [maybe, surely], (ray, block_ray), until, visitor);
-    }
+    };
     // SAFETY: the same.
     let (until, left) = unsafe {
         let [t, u, v] = [_mm256_cvtpd_ps(t.0), _mm256_cvtpd_ps(u.0), _mm256_cvtpd_ps(v.0)];
@@ -78,13 +76,11 @@ pub(super) unsafe fn all_of<S: Simd<Shear = BlockRay>, V: Visitor>(
     mut until: f32,
     visitor: &mut V,
 ) -> f32 {
-    let sure = maybe & surely;
-    let four = &FIRST_FOUR[sure as usize & 255];
     // SAFETY: the same.
-    let Located { known, t, u, v } = unsafe { located_four(block, block_ray, four) };
-    if sure == 0 || known != 0b1111 {
+    let Some((four, [t, u, v])) = (unsafe { located_four(block, block_ray, maybe & surely) })
+    else {
         return test_lanes(simd, block, [maybe, surely], (ray, block_ray), until, visitor);
-    }
+    };
     let [t, u, v] = [t.rounded(), u.rounded(), v.rounded()];
     for place in lanes(u32::from(four.once)) {
         let place = place & 3;
@@ -95,19 +91,25 @@ pub(super) unsafe fn all_of<S: Simd<Shear = BlockRay>, V: Visitor>(
         }
     }
     let others = maybe & !surely | u32::from(four.beyond);
-    if others == 0 || until == ENOUGH {
+    if others == 0 {
         return until;
     }
     test_lanes(simd, block, [others, surely], (ray, block_ray), until, visitor)
 }
 
-/// Where the line of a ray crosses four triangles of a block.
+/// The first four of the lanes of a mask, and where the line of a ray crosses them: `t`, `u` and `v`. `None` if
+/// that is not known of each, or if there is none.
 ///
 /// # Safety
 ///
 /// The processor has AVX2.
 #[inline(always)]
-unsafe fn located_four(block: &Block, ray: &BlockRay, four: &FirstFour) -> Located<Four> {
+unsafe fn located_four(
+    block: &Block,
+    ray: &BlockRay,
+    mask: u32,
+) -> Option<(&'static FirstFour, [Four; 3])> {
+    let four = &FIRST_FOUR[mask as usize & 255];
     // SAFETY: the same; there are four lanes, and rows are eight, aligned like the block.
     unsafe {
         let lanes = _mm_cvtepu8_epi32(_mm_loadu_si32(four.lanes.as_ptr().cast()));
@@ -122,7 +124,8 @@ unsafe fn located_four(block: &Block, ray: &BlockRay, four: &FirstFour) -> Locat
             });
             precisely_sheared(way, &[slope_x, slope_y])
         });
-        located(corners, t_per_z)
+        let Located { known, t, u, v } = located(corners, t_per_z);
+        (mask != 0 && known == 0b1111).then_some((four, [t, u, v]))
     }
 }
 
