@@ -202,6 +202,7 @@ fn test_block<S: Simd, V: Visitor>(
     }
     let Sifted { maybe, surely, .. } = sifted;
     if V::WANTS == Wants::Whether {
+        // Of few do the bounds not tell enough.
         return simd.test_lanes(block, [maybe, surely], (ray, shear), until, visitor);
     }
     if maybe & (maybe - 1) != 0 {
