@@ -28,7 +28,8 @@ impl Block {
     }
 
     /// [`locate`](super::intersect::locate) with the same arithmetic, or `None` where the line passes an
-    /// edge on the outside by a rounding, or through it.
+    /// edge on the outside by a rounding. The compiler pairs what can be paired; with a corner a lane it took
+    /// longer, as lanes had to change places.
     #[inline(always)]
     fn located(&self, lane: usize, ray: &BlockRay) -> Option<Hit> {
         let lane = lane & (LANES - 1);
@@ -47,7 +48,7 @@ impl Block {
     }
 }
 
-/// The hit in a lane that takes more than the arithmetic of vectors.
+/// The hit in a lane of which [`located`] does not tell.
 #[cold]
 #[inline(never)]
 pub(super) fn unknown_hit(block: &Block, lane: usize, surely: bool, ray: &Ray) -> Option<Hit> {

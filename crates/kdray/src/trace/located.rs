@@ -1,4 +1,4 @@
-//! Where rays cross triangles, many at once.
+//! Where rays cross triangles, one or many at once.
 
 use super::vector::{Mask, Precise};
 

@@ -13,8 +13,7 @@ use super::vector::{Four, Precise, by_axis};
 use super::walk::test_lanes;
 use crate::geometry::{Hit, Ray};
 
-/// Shows the visitor the hits of the first of these masks of lanes, of which it wants the first; the line
-/// crosses those of the second for certain.
+/// [`test_lanes`] where the first hit is wanted, four of them together.
 ///
 /// Most of the time the least `t` of four is all there is to see. Working out four takes about as long as one,
 /// and less than bounds of `t` that tell which one it is.
@@ -61,8 +60,7 @@ pub(super) unsafe fn first_of<S: Simd<Shear = BlockRay>, V: Visitor>(
     simd.test_lanes(block, [others, surely], (ray, block_ray), until, visitor)
 }
 
-/// Shows the visitor the hits of the first of these masks of lanes; the line crosses those of the second for
-/// certain.
+/// [`test_lanes`], four of them together.
 ///
 /// # Safety
 ///
@@ -76,23 +74,22 @@ pub(super) unsafe fn all_of<S: Simd<Shear = BlockRay>, V: Visitor>(
     mut until: f32,
     visitor: &mut V,
 ) -> f32 {
+    let mut others = maybe;
     // SAFETY: the same.
-    let Some((four, [t, u, v])) = (unsafe { located_four(block, block_ray, maybe & surely) })
-    else {
-        return test_lanes(simd, block, [maybe, surely], (ray, block_ray), until, visitor);
-    };
-    let [t, u, v] = [t.rounded(), u.rounded(), v.rounded()];
-    for place in lanes(u32::from(four.once)) {
-        let place = place & 3;
-        let triangle = block.index(usize::from(four.lanes[place]));
-        if !visitor.knows(triangle) {
-            let hit = Hit { t: t[place], triangle, u: u[place], v: v[place] };
-            until = lesser(until, visitor.hit(hit));
+    if let Some((four, [t, u, v])) = unsafe { located_four(block, block_ray, maybe & surely) } {
+        let [t, u, v] = [t.rounded(), u.rounded(), v.rounded()];
+        for place in lanes(u32::from(four.once)) {
+            let place = place & 3;
+            let triangle = block.index(usize::from(four.lanes[place]));
+            if !visitor.knows(triangle) {
+                let hit = Hit { t: t[place], triangle, u: u[place], v: v[place] };
+                until = lesser(until, visitor.hit(hit));
+            }
         }
-    }
-    let others = maybe & !surely | u32::from(four.beyond);
-    if others == 0 {
-        return until;
+        others = maybe & !surely | u32::from(four.beyond);
+        if others == 0 {
+            return until;
+        }
     }
     test_lanes(simd, block, [others, surely], (ray, block_ray), until, visitor)
 }

@@ -192,17 +192,15 @@ fn test_block<S: Simd, V: Visitor>(
     let Some(sifted) = simd.filter(block, shear, interval, V::WANTS) else {
         return until;
     };
+    let Sifted { maybe, surely, inside } = sifted;
     if V::WANTS == Wants::Whether {
-        for lane in lanes(sifted.inside) {
+        for lane in lanes(inside) {
             until = lesser(until, visitor.inside(block.index(lane)));
             if until == ENOUGH {
                 return ENOUGH;
             }
         }
-    }
-    let Sifted { maybe, surely, .. } = sifted;
-    if V::WANTS == Wants::Whether {
-        // Of few do the bounds not tell enough.
+        // Of most the bounds tell enough.
         return simd.test_lanes(block, [maybe, surely], (ray, shear), until, visitor);
     }
     if maybe & (maybe - 1) != 0 {

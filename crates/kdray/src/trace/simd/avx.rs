@@ -124,28 +124,13 @@ macro_rules! simd {
                 until: f32,
                 visitor: &mut V,
             ) -> f32 {
-                #[inline(never)]
-                #[target_feature(enable = $features)]
-                fn apart<V: Visitor>(
-                    simd: $simd,
-                    block: &Block,
-                    lanes: [u32; 2],
-                    ray: (&Ray, &BlockRay),
-                    until: f32,
-                    visitor: &mut V,
-                ) -> f32 {
-                    // SAFETY: as above.
-                    unsafe { all_of(simd, block, lanes, ray, until, visitor) }
+                if V::WANTS != Wants::First {
+                    return self.test_lanes(block, lanes, ray, until, visitor);
                 }
+                // Rows that were kept from the filter would be written to memory and read again.
+                let block = black_box(block);
                 // SAFETY: as above.
-                unsafe {
-                    if V::WANTS == Wants::First {
-                        // Rows that were kept from the filter would be written to memory and read again.
-                        first_of(self, black_box(block), lanes, ray, until, visitor)
-                    } else {
-                        apart(self, block, lanes, ray, until, visitor)
-                    }
-                }
+                unsafe { first_of(self, block, lanes, ray, until, visitor) }
             }
 
             #[inline(always)]
@@ -190,6 +175,10 @@ macro_rules! simd {
                     until: f32,
                     visitor: &mut V,
                 ) -> f32 {
+                    if V::WANTS == Wants::All {
+                        // SAFETY: as above.
+                        return unsafe { all_of(simd, block, lanes, ray, until, visitor) };
+                    }
                     test_lanes(simd, block, lanes, ray, until, visitor)
                 }
                 // SAFETY: as above.

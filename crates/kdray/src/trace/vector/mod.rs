@@ -1,7 +1,7 @@
 //! Arithmetic on eight or sixteen numbers at once.
 //!
 //! A vector exists only where the processor has instructions for it: the first comes from a proof of
-//! that, all others from vectors. So arithmetic on vectors is safe.
+//! that, all others from vectors. So arithmetic on vectors is safe. A single number is a vector, too.
 
 #[cfg(target_arch = "x86_64")]
 mod eight;

@@ -62,3 +62,25 @@ impl Precise for f64 {
         self as f32
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_is_like_a_lane() {
+        // Of two without an order, the second.
+        for [a, b, least, greatest] in [
+            [1.0, 2.0, 1.0, 2.0],
+            [2.0, 1.0, 1.0, 2.0],
+            [f64::NAN, 1.0, 1.0, 1.0],
+            [0.0, -0.0, -0.0, -0.0],
+        ] {
+            assert_eq!(Arithmetic::min(a, b).to_bits(), f64::to_bits(least), "{a} {b}");
+            assert_eq!(Arithmetic::max(a, b).to_bits(), f64::to_bits(greatest), "{a} {b}");
+            assert_eq!([a.is_less(b), a.is_at_most(b)], [a < b, a <= b]);
+        }
+        assert!(Arithmetic::min(1.0, f64::NAN).is_nan() && Arithmetic::max(1.0, f64::NAN).is_nan());
+        assert_eq!([true.and_not(false).bits(), true.and_not(true).bits()], [1, 0]);
+    }
+}
