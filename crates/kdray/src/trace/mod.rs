@@ -76,6 +76,8 @@ mod neon;
 mod noise;
 mod only;
 #[cfg(target_arch = "x86_64")]
+mod opaque;
+#[cfg(target_arch = "x86_64")]
 mod packet;
 mod pending;
 mod prepare;

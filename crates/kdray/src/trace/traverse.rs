@@ -75,32 +75,49 @@ pub(super) fn traverse<V: Visitor>(trip: &Trip, ray: &Ray, visitor: &mut V) {
     }
     #[cfg(target_arch = "aarch64")]
     if let Best::Neon(neon) = trip.simd {
-        return traverse_with(neon, trip, ray, visitor);
+        return traverse_apart(neon, trip, ray, visitor);
     }
     traverse_plain(trip, ray, visitor);
 }
 
 #[inline(never)]
 fn traverse_plain(trip: &Trip, ray: &Ray, visitor: &mut impl Visitor) {
-    traverse_with(Plain, trip, ray, visitor);
+    traverse_apart(Plain, trip, ray, visitor);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,bmi1,lzcnt,popcnt")]
 fn traverse_avx2<V: Visitor>(simd: Avx2, trip: &Trip, ray: &Ray, visitor: &mut V) {
-    traverse_with(simd, trip, ray, visitor);
+    traverse_apart(simd, trip, ray, visitor);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma,bmi1,lzcnt,popcnt")]
 fn traverse_avx512<V: Visitor>(simd: Avx512, trip: &Trip, ray: &Ray, visitor: &mut V) {
-    traverse_with(simd, trip, ray, visitor);
+    traverse_apart(simd, trip, ray, visitor);
+}
+
+/// [`traverse_with`], with a function apart for rays that do not pass beside the scene: those that do need no
+/// room on the stack.
+#[inline(always)]
+fn traverse_apart(simd: impl Simd, trip: &Trip, ray: &Ray, visitor: &mut impl Visitor) {
+    if !simd.is_beside(ray, &trip.hull) {
+        simd.descend(trip, ray, visitor);
+    }
 }
 
 /// [`traverse`] as part of a function that has the instructions.
 #[inline(always)]
 pub(super) fn traverse_with(simd: impl Simd, trip: &Trip, ray: &Ray, visitor: &mut impl Visitor) {
-    if !simd.is_beside(ray, &trip.hull) && simd.is_valid(ray) {
+    if !simd.is_beside(ray, &trip.hull) {
+        descend(simd, trip, ray, visitor);
+    }
+}
+
+/// Visits the root and everything below it, if the ray is valid.
+#[inline(always)]
+pub(super) fn descend(simd: impl Simd, trip: &Trip, ray: &Ray, visitor: &mut impl Visitor) {
+    if simd.is_valid(ray) {
         let root = (Child(0), ray.t_max);
         visit_below(simd, &trip.layout, (ray, trip.hull.reach), root, visitor);
     }

@@ -1,17 +1,16 @@
 //! Eight boxes and triangles at once, with AVX2 or AVX-512.
 
-use std::hint::black_box;
-
 use super::{HasAvx2, HasAvx512, Simd};
 use crate::geometry::{Hit, Ray};
 use crate::trace::block::Block;
 use crate::trace::block_ray::BlockRay;
 use crate::trace::hull::Hull;
+use crate::trace::opaque::opaque;
 use crate::trace::several::{all_of, first_of};
 use crate::trace::sifted::{Sifted, Wants};
 use crate::trace::stack::Stack;
 use crate::trace::step::{self, Lanes, Ready};
-use crate::trace::traverse::Visitor;
+use crate::trace::traverse::{Trip, Visitor, descend};
 use crate::trace::walk::{test_blocks, test_lanes};
 use crate::trace::wide::{Child, Wide};
 
@@ -30,6 +29,9 @@ pub(in crate::trace) struct Avx512 {
 }
 
 /// What both have, with the steps of each.
+///
+/// The numbers of a ray that are read one by one the compiler would read as vectors across what was written
+/// to memory one by one a moment ago, and wait for it: so it does not see that they are in a row.
 macro_rules! simd {
     ($simd:ident, $proof:ident, $features:literal, $nearest:ident, $push:ident) => {
         impl From<$proof> for $simd {
@@ -101,7 +103,7 @@ macro_rules! simd {
                 wants: Wants,
             ) -> Option<Sifted> {
                 // SAFETY: as above.
-                unsafe { block.filter_avx2(shear, interval, wants) }
+                unsafe { block.filter_avx2(opaque(shear), interval, wants) }
             }
 
             #[inline(always)]
@@ -110,9 +112,9 @@ macro_rules! simd {
                 block: &Block,
                 lane: usize,
                 surely: bool,
-                ray: (&Ray, &BlockRay),
+                (ray, shear): (&Ray, &BlockRay),
             ) -> Option<Hit> {
-                block.hit_by(lane, surely, ray)
+                block.hit_by(lane, surely, (ray, opaque(shear)))
             }
 
             #[inline(always)]
@@ -128,9 +130,20 @@ macro_rules! simd {
                     return self.test_lanes(block, lanes, ray, until, visitor);
                 }
                 // Rows that were kept from the filter would be written to memory and read again.
-                let block = black_box(block);
+                let (block, ray) = (opaque(block), (ray.0, opaque(ray.1)));
                 // SAFETY: as above.
                 unsafe { first_of(self, block, lanes, ray, until, visitor) }
+            }
+
+            #[inline(always)]
+            fn descend<V: Visitor>(self, trip: &Trip, ray: &Ray, visitor: &mut V) {
+                #[inline(never)]
+                #[target_feature(enable = $features)]
+                fn apart<V: Visitor>(simd: $simd, trip: &Trip, ray: &Ray, visitor: &mut V) {
+                    descend(simd, trip, ray, visitor);
+                }
+                // SAFETY: as above.
+                unsafe { apart(self, trip, ray, visitor) }
             }
 
             #[inline(always)]

@@ -10,7 +10,7 @@ use super::prepare::{Shear, Slabs};
 use super::sifted::{Sifted, Wants};
 use super::stack::Stack;
 use super::step;
-use super::traverse::Visitor;
+use super::traverse::{Trip, Visitor, descend};
 use super::walk::{test_blocks, test_lanes};
 use super::wide::{Child, Wide};
 use crate::geometry::{Hit, Ray};
@@ -85,6 +85,12 @@ pub(super) trait Simd: Copy {
         visitor: &mut V,
     ) -> f32 {
         self.test_lanes(block, lanes, ray, until, visitor)
+    }
+
+    /// [`descend`] in a function of its own.
+    #[inline(never)]
+    fn descend<V: Visitor>(self, trip: &Trip, ray: &Ray, visitor: &mut V) {
+        descend(self, trip, ray, visitor);
     }
 
     /// [`test_blocks`] in a function of its own, which may need to be told its instructions.

@@ -10,6 +10,7 @@ use super::axes::Axes;
 use super::ready::Ready;
 use crate::geometry::Ray;
 use crate::trace::eights::by_axis;
+use crate::trace::opaque::opaque;
 use crate::trace::stack::Stack;
 use crate::trace::wide::{Child, Wide};
 
@@ -140,7 +141,8 @@ unsafe fn pass(wide: &Wide, slabs: &Lanes, interval: [f32; 2]) -> Passage {
     }
 }
 
-/// [`nearest`](super::nearest), with a jump for one child: a single ray waits for nothing but the result.
+/// [`nearest`](super::nearest), with jumps for one child and to the child: a single ray waits for nothing but
+/// the result, and not for that, where it was [foreseen].
 ///
 /// The nearest of several is known from the order and which are met, long before the others are on the
 /// stack.
@@ -166,15 +168,40 @@ pub(in crate::trace) unsafe fn nearest_avx2(
         let order = *wide.order.get_unchecked(slabs.octant);
         let (places, mask) = ordered(order, met);
         push_places(wide, (places, mask), passage.enter, mask.count_ones() as usize - 1, stack);
-        let last = 31 - mask.leading_zeros();
-        Some(wide.children[(order >> (4 * last)) as usize & 7])
+        Some(foreseen(wide, nearest_of(order, mask)))
     }
 }
 
 /// The child that is met, or none: most of the time.
 #[inline(always)]
 fn only(wide: &Wide, mask: u32) -> Option<Child> {
-    if mask == 0 { None } else { Some(wide.children[mask.trailing_zeros() as usize & 7]) }
+    if mask == 0 { None } else { Some(foreseen(wide, mask.trailing_zeros())) }
+}
+
+/// The place of the last in an order of those that were met, by their places in it, a bit each.
+#[inline(always)]
+fn nearest_of(order: u32, met: u32) -> u32 {
+    order >> (4 * (31 - met.leading_zeros()))
+}
+
+/// The child in a place, of which the lowest three bits count, by a jump.
+///
+/// A place is known when the boxes have been tested. A jump is foreseen, where the rays before went the same
+/// way: then what the child is, and its memory, are there before that. Read by its place, each step would
+/// wait for the one before it.
+#[inline(always)]
+fn foreseen(wide: &Wide, place: u32) -> Child {
+    // As long as the compiler does not see that all are the same.
+    match place & 7 {
+        0 => *opaque(&wide.children[0]),
+        1 => *opaque(&wide.children[1]),
+        2 => *opaque(&wide.children[2]),
+        3 => *opaque(&wide.children[3]),
+        4 => *opaque(&wide.children[4]),
+        5 => *opaque(&wide.children[5]),
+        6 => *opaque(&wide.children[6]),
+        _ => *opaque(&wide.children[7]),
+    }
 }
 
 /// [`push`](super::push), without a jump: one that takes turns with others has its next step foreseen.
@@ -288,8 +315,10 @@ pub(in crate::trace) unsafe fn nearest_avx512(
         if mask & mask.wrapping_sub(1) == 0 {
             return only(wide, mask);
         }
-        push_passed(wide, slabs.octant, &passage, stack);
-        Some(stack.take())
+        let order = *wide.order.get_unchecked(slabs.octant);
+        let met = push_passed(wide, order, &passage, stack);
+        stack.drop_top();
+        Some(foreseen(wide, nearest_of(order, met)))
     }
 }
 
@@ -308,20 +337,22 @@ pub(in crate::trace) unsafe fn push_avx512(
     // SAFETY: the same.
     unsafe {
         let passage = ready.pass(wide, interval);
-        push_passed(wide, ready.octant(), &passage, stack);
+        let order = *wide.order.get_unchecked(ready.octant());
+        push_passed(wide, order, &passage, stack);
     }
 }
 
-/// Puts the children that are met on the stack, the farthest first.
+/// Puts the children that are met on the stack, the farthest first. Gives which they are by their places in
+/// the order, a bit each.
 ///
 /// # Safety
 ///
 /// The processor has AVX-512 and what comes with it.
 #[inline(always)]
-unsafe fn push_passed(wide: &Wide, octant: usize, passage: &Passage, stack: &mut Stack) {
-    // SAFETY: the same; an octant is less than eight, and children are eight lanes, aligned like the node.
+unsafe fn push_passed(wide: &Wide, order: u32, passage: &Passage, stack: &mut Stack) -> u32 {
+    // SAFETY: the same; children are eight lanes, aligned like the node.
     unsafe {
-        let places = nibbles(*wide.order.get_unchecked(octant));
+        let places = nibbles(order);
         let enter = _mm256_permutevar8x32_ps(passage.enter, places);
         let leave = _mm256_permutevar8x32_ps(passage.leave, places);
         let met = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(enter, leave);
@@ -330,6 +361,7 @@ unsafe fn push_passed(wide: &Wide, octant: usize, passage: &Passage, stack: &mut
         let children = _mm256_maskz_compress_epi32(met, children);
         let enter = _mm256_maskz_compress_ps(met, enter);
         stack.push_avx2(children, enter, met.count_ones() as usize);
+        u32::from(met)
     }
 }
 
