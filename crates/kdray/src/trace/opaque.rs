@@ -7,7 +7,7 @@ use std::arch::asm;
 #[expect(clippy::pointers_in_nomem_asm_block, reason = "nothing is read through it there")]
 pub(super) fn opaque<T>(of: &T) -> &T {
     let mut address = std::ptr::from_ref(of);
-    // SAFETY: nothing happens.
+    // SAFETY: the address stays what it was.
     unsafe {
         asm!("/* {0} */", inout(reg) address, options(pure, nomem, nostack, preserves_flags));
         &*address

@@ -308,7 +308,7 @@ pub(in crate::trace) unsafe fn nearest_avx512(
     interval: [f32; 2],
     stack: &mut Stack,
 ) -> Option<Child> {
-    // SAFETY: the same.
+    // SAFETY: the same; an octant is less than eight.
     unsafe {
         let passage = pass(wide, slabs, interval);
         let mask = u32::from(_mm256_cmp_ps_mask::<_CMP_LE_OQ>(passage.enter, passage.leave));
@@ -334,7 +334,7 @@ pub(in crate::trace) unsafe fn push_avx512(
     interval: [f32; 2],
     stack: &mut Stack,
 ) {
-    // SAFETY: the same.
+    // SAFETY: the same; an octant is less than eight.
     unsafe {
         let passage = ready.pass(wide, interval);
         let order = *wide.order.get_unchecked(ready.octant());
