@@ -95,16 +95,8 @@ impl<const CAPACITY: usize> StackOf<CAPACITY> {
             .then(|| unsafe { self.children.get_unchecked(self.height - 1).assume_init() })
     }
 
-    /// Takes the subtree on top off a stack that is not empty.
-    #[cfg(target_arch = "x86_64")]
-    #[inline(always)]
-    pub(super) fn drop_top(&mut self) {
-        debug_assert!(self.height > 0, "there is one");
-        self.height -= 1;
-    }
-
     /// The subtree on top of a stack that is not empty.
-    #[cfg(target_arch = "aarch64")]
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     #[inline(always)]
     pub(super) fn take(&mut self) -> Child {
         debug_assert!(self.height > 0, "there is one");

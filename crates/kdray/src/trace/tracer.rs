@@ -90,8 +90,8 @@ impl Tracer {
     /// Exactly the hit that [`intersect`](super::intersect()) gives for that triangle. Watertight:
     /// no ray slips between triangles that share an edge. \[PH04], \[WBA13]
     ///
-    /// Fastest for a ray that goes like the one before it. Many that go another way each are answered faster
-    /// by [`Tracer::batch`].
+    /// Fastest for a ray that goes like the one before it. Many that go another way each are mostly answered
+    /// faster by [`Tracer::batch`].
     #[inline]
     #[must_use]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
