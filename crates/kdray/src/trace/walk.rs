@@ -23,14 +23,16 @@ fn visit<S: Simd>(
 ) -> Option<Child> {
     if let Some(first) = child.block() {
         visitor.leaf();
-        // Made when the first leaf is reached: many rays reach none. Its memory is asked for meanwhile.
-        let shear = shear.get_or_insert_with(|| {
-            layout.prefetch_block(child);
-            simd.shear(ray)
-        });
+        let shear = if S::SHEARS_AHEAD {
+            // SAFETY: then it was made before the first step.
+            unsafe { shear.as_ref().unwrap_unchecked() }
+        } else {
+            shear.get_or_insert_with(|| simd.shear(ray))
+        };
         // SAFETY: children of a layout are in it.
         let blocks = unsafe { layout.blocks.get_unchecked(first..) };
-        *until = test_leaf(simd, (blocks, child.is_one()), (ray, shear), *until, visitor);
+        let leaf = (blocks, child.is_one(), true);
+        *until = test_leaf(simd, leaf, (ray, shear), *until, visitor);
         if *until == ENOUGH { None } else { stack.pop(*until) }
     } else {
         visitor.step();
@@ -57,7 +59,8 @@ pub(super) fn visit_below<S: Simd>(
     visitor: &mut impl Visitor,
 ) -> f32 {
     let slabs = simd.slabs(ray, reach);
-    let (mut shear, mut stack) = (None, Stack::new());
+    let mut shear = S::SHEARS_AHEAD.then(|| simd.shear(ray));
+    let mut stack = Stack::new();
     let mut next = Some(child);
     while let Some(child) = next {
         let ray = (ray, &slabs, &mut shear);
@@ -127,7 +130,7 @@ impl<'a, S: Simd> Walk<'a, S> {
         let first = child.block().unwrap_or(0);
         // SAFETY: as above.
         let blocks = unsafe { layout.blocks.get_unchecked(first..) };
-        let (leaf, ray) = ((blocks, child.is_one()), (self.ray, &*shear));
+        let (leaf, ray) = ((blocks, child.is_one(), false), (self.ray, &*shear));
         self.until = test_leaf(self.simd, leaf, ray, self.until, visitor);
         next(layout, self.stack, self.until)
     }
@@ -141,19 +144,20 @@ fn next(layout: &Layout, stack: &mut Stack, until: f32) -> Option<Child> {
     Some(next)
 }
 
-/// Shows the visitor the hits of a leaf; gives the `t` up to which there is more to see.
+/// Shows the visitor the hits of a leaf, which comes with whether it has one block, and whether the ray is alone;
+/// gives the `t` up to which there is more to see.
 ///
 /// Few leaves have more than one block. In a loop with the first one the compiler would make vectors of the
 /// ray before it, more than there are registers, so the others are tested elsewhere.
 #[inline(always)]
 fn test_leaf<S: Simd, V: Visitor>(
     simd: S,
-    (blocks, is_one): (&[Block], bool),
+    (blocks, is_one, is_alone): (&[Block], bool, bool),
     ray: (&Ray, &S::Shear),
     until: f32,
     visitor: &mut V,
 ) -> f32 {
-    let until = test_block(simd, &blocks[0], ray, until, visitor);
+    let until = test_block(simd, (&blocks[0], is_alone), ray, until, visitor);
     if is_one || blocks[0].is_last() || until == ENOUGH {
         return until;
     }
@@ -170,7 +174,7 @@ pub(super) fn test_blocks<S: Simd, V: Visitor>(
     visitor: &mut V,
 ) -> f32 {
     for block in blocks {
-        until = test_block(simd, block, ray, until, visitor);
+        until = test_block(simd, (block, false), ray, until, visitor);
         if block.is_last() || until == ENOUGH {
             break;
         }
@@ -178,11 +182,11 @@ pub(super) fn test_blocks<S: Simd, V: Visitor>(
     until
 }
 
-/// Shows the visitor the hits of a block.
+/// Shows the visitor the hits of a block, which comes with whether the ray is alone.
 #[inline(always)]
 fn test_block<S: Simd, V: Visitor>(
     simd: S,
-    block: &Block,
+    (block, is_alone): (&Block, bool),
     (ray, shear): (&Ray, &S::Shear),
     mut until: f32,
     visitor: &mut V,
@@ -204,7 +208,7 @@ fn test_block<S: Simd, V: Visitor>(
         return simd.test_lanes(block, [maybe, surely], (ray, shear), until, visitor);
     }
     if maybe & (maybe - 1) != 0 {
-        return simd.several(block, [maybe, surely], (ray, shear), until, visitor);
+        return simd.several((block, is_alone), [maybe, surely], (ray, shear), until, visitor);
     }
     let lane = maybe.trailing_zeros() as usize;
     test_lane(simd, block, (lane, sifted.surely(lane)), (ray, shear), until, visitor)

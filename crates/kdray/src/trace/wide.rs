@@ -126,6 +126,7 @@ impl Layout {
     }
 
     /// Asks for the memory of the first block of a leaf.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn prefetch_block(&self, leaf: Child) {
         prefetch(self.blocks.as_ptr().wrapping_add(leaf.place()));

@@ -26,6 +26,10 @@ pub(super) trait Simd: Copy {
     /// A ray ready for triangles.
     type Shear;
 
+    /// Whether a single ray is made ready for triangles long before its first leaf, which would wait for it
+    /// otherwise. Where that takes many instructions, only rays that reach a leaf are.
+    const SHEARS_AHEAD: bool = false;
+
     /// [`Ray::is_valid`].
     #[inline(always)]
     fn is_valid(self, ray: &Ray) -> bool {
@@ -75,10 +79,12 @@ pub(super) trait Simd: Copy {
     ) -> Option<Hit>;
 
     /// [`test_lanes`] where there are several. Where the first hit is wanted, others need not be shown.
+    ///
+    /// The block comes with whether the ray is alone: no other takes turns with it.
     #[inline(always)]
     fn several<V: Visitor>(
         self,
-        block: &Block,
+        (block, _): (&Block, bool),
         lanes: [u32; 2],
         ray: (&Ray, &Self::Shear),
         until: f32,
