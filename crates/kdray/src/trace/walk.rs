@@ -17,18 +17,13 @@ use crate::geometry::Ray;
 fn visit<S: Simd>(
     simd: S,
     layout: &Layout,
-    (ray, slabs, shear): (&Ray, &S::Slabs, &mut Option<S::Shear>),
+    (ray, slabs, shear): (&Ray, &S::Slabs, &mut Sheared<S>),
     (child, until, stack): (Child, &mut f32, &mut Stack),
     visitor: &mut impl Visitor,
 ) -> Option<Child> {
     if let Some(first) = child.block() {
         visitor.leaf();
-        let shear = if S::SHEARS_AHEAD {
-            // SAFETY: then it was made before the first step.
-            unsafe { shear.as_ref().unwrap_unchecked() }
-        } else {
-            shear.get_or_insert_with(|| simd.shear(ray))
-        };
+        let shear = shear.get(simd, ray);
         // SAFETY: children of a layout are in it.
         let blocks = unsafe { layout.blocks.get_unchecked(first..) };
         let leaf = (blocks, child.is_one(), true);
@@ -59,8 +54,7 @@ pub(super) fn visit_below<S: Simd>(
     visitor: &mut impl Visitor,
 ) -> f32 {
     let slabs = simd.slabs(ray, reach);
-    let mut shear = S::SHEARS_AHEAD.then(|| simd.shear(ray));
-    let mut stack = Stack::new();
+    let (mut shear, mut stack) = (Sheared::new(simd, ray), Stack::new());
     let mut next = Some(child);
     while let Some(child) = next {
         let ray = (ray, &slabs, &mut shear);
@@ -69,12 +63,33 @@ pub(super) fn visit_below<S: Simd>(
     until
 }
 
+/// A ray ready for triangles: from the start, if it is made so [ahead](Simd::SHEARS_AHEAD), or from its first leaf
+/// on.
+struct Sheared<S: Simd>(Option<S::Shear>);
+
+impl<S: Simd> Sheared<S> {
+    #[inline(always)]
+    fn new(simd: S, ray: &Ray) -> Self {
+        Self(S::SHEARS_AHEAD.then(|| simd.shear(ray)))
+    }
+
+    #[inline(always)]
+    fn get(&mut self, simd: S, ray: &Ray) -> &S::Shear {
+        if S::SHEARS_AHEAD {
+            // SAFETY: it was made so.
+            unsafe { self.0.as_ref().unwrap_unchecked() }
+        } else {
+            self.0.get_or_insert_with(|| simd.shear(ray))
+        }
+    }
+}
+
 /// Where a ray is, and what it has still to visit.
 pub(super) struct Walk<'a, S: Simd> {
     simd: S,
     ray: &'a Ray,
     ready: S::Ready,
-    shear: Option<S::Shear>,
+    shear: Sheared<S>,
     stack: &'a mut Stack,
     /// That of the ray, on a line that a step reads anyway.
     t_min: f32,
@@ -88,7 +103,8 @@ impl<'a, S: Simd> Walk<'a, S> {
         let ready = simd.ready(ray, reach);
         stack.clear();
         let Ray { t_min, t_max, .. } = *ray;
-        Self { simd, ray, ready, shear: None, stack, t_min, until: t_max }
+        let shear = Sheared::new(simd, ray);
+        Self { simd, ray, ready, shear, stack, t_min, until: t_max }
     }
 
     /// Goes on with another ray, at the root.
@@ -97,7 +113,7 @@ impl<'a, S: Simd> Walk<'a, S> {
         self.stack.clear();
         self.ray = ray;
         self.ready = self.simd.ready(ray, reach);
-        self.shear = None;
+        self.shear = Sheared::new(self.simd, ray);
         (self.t_min, self.until) = (ray.t_min, ray.t_max);
     }
 
@@ -126,11 +142,11 @@ impl<'a, S: Simd> Walk<'a, S> {
         visitor: &mut impl Visitor,
     ) -> Option<Child> {
         visitor.leaf();
-        let shear = self.shear.get_or_insert_with(|| self.simd.shear(self.ray));
+        let shear = self.shear.get(self.simd, self.ray);
         let first = child.block().unwrap_or(0);
         // SAFETY: as above.
         let blocks = unsafe { layout.blocks.get_unchecked(first..) };
-        let (leaf, ray) = ((blocks, child.is_one(), false), (self.ray, &*shear));
+        let (leaf, ray) = ((blocks, child.is_one(), false), (self.ray, shear));
         self.until = test_leaf(self.simd, leaf, ray, self.until, visitor);
         next(layout, self.stack, self.until)
     }

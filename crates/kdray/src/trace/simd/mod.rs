@@ -26,8 +26,8 @@ pub(super) trait Simd: Copy {
     /// A ray ready for triangles.
     type Shear;
 
-    /// Whether a single ray is made ready for triangles long before its first leaf, which would wait for it
-    /// otherwise. Where that takes many instructions, only rays that reach a leaf are.
+    /// Whether a ray is made ready for triangles long before its first leaf, which would wait for it otherwise.
+    /// Where that takes many instructions, only rays that reach a leaf are.
     const SHEARS_AHEAD: bool = false;
 
     /// [`Ray::is_valid`].
