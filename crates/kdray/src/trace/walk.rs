@@ -339,7 +339,8 @@ mod tests {
             // One that is left out now and then, which may be the first.
             let accept = |triangle: u32| round % 3 != 0 || triangle != round as u32 % 8;
             let mut closest = Closest::new(&ray, accept);
-            test_blocks(simd, &blocks, (&ray, &shear), ray.t_max, &mut closest);
+            let leaf = (&blocks[..], true, round % 2 == 0);
+            test_leaf(simd, leaf, (&ray, &shear), ray.t_max, &mut closest);
             hits.retain(|hit| accept(hit.triangle));
             let first = hits.iter().copied().min_by(|a, b| a.t.total_cmp(&b.t));
             assert_eq!(closest.hit, first, "{triangles:?} {ray:?}");
