@@ -2,7 +2,7 @@
 //!
 //! Of all ways to cut a subtree into wide nodes this finds the one with the least expected number of
 //! steps and blocks, from the leaves up: for every node and every number of children, what it costs
-//! if at most so many stand for it [YKL17].
+//! if at most so many stand for it \[YKL17].
 
 use smallvec::SmallVec;
 
