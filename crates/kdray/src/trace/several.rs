@@ -17,8 +17,7 @@ use crate::geometry::{Hit, Ray};
 /// [`test_lanes`] where the first hit is wanted, four of them together.
 ///
 /// Most of the time the least `t` of four is all there is to see. Working out four takes about as long as one,
-/// and less than bounds of `t` that tell which one it is. Which four they are is [foreseen] if the ray is alone:
-/// one that takes turns with others does not wait.
+/// and less than bounds of `t` that tell which one it is. Which four they are is [foreseen] if that is asked for.
 ///
 /// # Safety
 ///
@@ -26,14 +25,14 @@ use crate::geometry::{Hit, Ray};
 #[inline(always)]
 pub(super) unsafe fn first_of<S: Simd<Shear = BlockRay>, V: Visitor>(
     simd: S,
-    (block, is_alone): (&Block, bool),
+    (block, foresees): (&Block, bool),
     [maybe, surely]: [u32; 2],
     (ray, block_ray): (&Ray, &BlockRay),
     until: f32,
     visitor: &mut V,
 ) -> f32 {
     let mask = maybe & surely;
-    let four = if is_alone { foreseen(mask) } else { FirstFour::of(mask) };
+    let four = if foresees { foreseen(mask) } else { FirstFour::of(mask) };
     // SAFETY: the same.
     let Some([t, u, v]) = (unsafe { located_four(block, block_ray, four) }) else {
         return simd.test_lanes(block, [maybe, surely], (ray, block_ray), until, visitor);

@@ -76,7 +76,7 @@ impl<S: Simd> Sheared<S> {
     #[inline(always)]
     fn get(&mut self, simd: S, ray: &Ray) -> &S::Shear {
         if S::SHEARS_AHEAD {
-            // SAFETY: it was made so.
+            // SAFETY: `new` made it, and nothing takes it away.
             unsafe { self.0.as_ref().unwrap_unchecked() }
         } else {
             self.0.get_or_insert_with(|| simd.shear(ray))
@@ -160,20 +160,20 @@ fn next(layout: &Layout, stack: &mut Stack, until: f32) -> Option<Child> {
     Some(next)
 }
 
-/// Shows the visitor the hits of a leaf, which comes with whether it has one block, and whether the ray is alone;
-/// gives the `t` up to which there is more to see.
+/// Shows the visitor the hits of a leaf, which comes with whether it has one block, and whether its triangles are
+/// [foreseen](Simd::several); gives the `t` up to which there is more to see.
 ///
 /// Few leaves have more than one block. In a loop with the first one the compiler would make vectors of the
-/// ray before it, more than there are registers, so the others are tested elsewhere.
+/// ray before it, more than there are registers, so the others are tested elsewhere, and not foreseen.
 #[inline(always)]
 fn test_leaf<S: Simd, V: Visitor>(
     simd: S,
-    (blocks, is_one, is_alone): (&[Block], bool, bool),
+    (blocks, is_one, foresees): (&[Block], bool, bool),
     ray: (&Ray, &S::Shear),
     until: f32,
     visitor: &mut V,
 ) -> f32 {
-    let until = test_block(simd, (&blocks[0], is_alone), ray, until, visitor);
+    let until = test_block(simd, (&blocks[0], foresees), ray, until, visitor);
     if is_one || blocks[0].is_last() || until == ENOUGH {
         return until;
     }
@@ -198,11 +198,11 @@ pub(super) fn test_blocks<S: Simd, V: Visitor>(
     until
 }
 
-/// Shows the visitor the hits of a block, which comes with whether the ray is alone.
+/// Shows the visitor the hits of a block, which comes with whether its triangles are foreseen.
 #[inline(always)]
 fn test_block<S: Simd, V: Visitor>(
     simd: S,
-    (block, is_alone): (&Block, bool),
+    (block, foresees): (&Block, bool),
     (ray, shear): (&Ray, &S::Shear),
     mut until: f32,
     visitor: &mut V,
@@ -224,7 +224,7 @@ fn test_block<S: Simd, V: Visitor>(
         return simd.test_lanes(block, [maybe, surely], (ray, shear), until, visitor);
     }
     if maybe & (maybe - 1) != 0 {
-        return simd.several((block, is_alone), [maybe, surely], (ray, shear), until, visitor);
+        return simd.several((block, foresees), [maybe, surely], (ray, shear), until, visitor);
     }
     let lane = maybe.trailing_zeros() as usize;
     test_lane(simd, block, (lane, sifted.surely(lane)), (ray, shear), until, visitor)

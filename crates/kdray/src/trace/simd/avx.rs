@@ -122,7 +122,7 @@ macro_rules! simd {
             #[inline(always)]
             fn several<V: Visitor>(
                 self,
-                (block, is_alone): (&Block, bool),
+                (block, foresees): (&Block, bool),
                 lanes: [u32; 2],
                 ray: (&Ray, &BlockRay),
                 until: f32,
@@ -132,7 +132,7 @@ macro_rules! simd {
                     return self.test_lanes(block, lanes, ray, until, visitor);
                 }
                 // Rows that were kept from the filter would be written to memory and read again.
-                let (block, ray) = ((opaque(block), is_alone), (ray.0, opaque(ray.1)));
+                let (block, ray) = ((opaque(block), foresees), (ray.0, opaque(ray.1)));
                 // SAFETY: as above.
                 unsafe { first_of(self, block, lanes, ray, until, visitor) }
             }

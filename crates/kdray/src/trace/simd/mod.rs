@@ -80,7 +80,8 @@ pub(super) trait Simd: Copy {
 
     /// [`test_lanes`] where there are several. Where the first hit is wanted, others need not be shown.
     ///
-    /// The block comes with whether the ray is alone: no other takes turns with it.
+    /// The block comes with whether it is foreseen which they are, as for a single ray. One that takes turns with
+    /// others would lose by it.
     #[inline(always)]
     fn several<V: Visitor>(
         self,
